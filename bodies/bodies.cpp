@@ -22,7 +22,7 @@ Bodies<Real>::Bodies(const Decomposition& decomposition, MPI_Comm communicator, 
       links_(fluid.tiles().count()),
       solids_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), std::move(solids)),
       link_builder_(decomposition, fluid.block(), fluid.cells(), fluid.tiles(), &solids_),
-      hidden_links_(decomposition, fluid.block(), fluid.cells(), rest),
+      occluded_links_(decomposition, fluid.block(), fluid.cells(), rest),
       refill_(decomposition, communicator) {
   set_rest(options_.links, rest_);
   add_solids(communicator);
@@ -59,9 +59,9 @@ void Bodies<Real>::check_block(MPI_Comm communicator) const {
   on_all_ranks(communicator, [&] {
     LinkSlots::check(fluid_.populations());
     for (int a = 0; a < 2; ++a)
-      if (fluid_.block().size()[a] > LinkPlace::largest)
+      if (fluid_.block().size()[a] > LinkXY::largest)
         throw InputError(fmt::format("A rank would hold {} cells along {}, more than {}; use more ranks.",
-                                     fluid_.block().size()[a], "xy"[a], LinkPlace::largest));
+                                     fluid_.block().size()[a], "xy"[a], LinkXY::largest));
   });
 }
 
@@ -84,9 +84,9 @@ void Bodies<Real>::resize_to_slots() {
 }
 
 template <typename Real>
-void Bodies<Real>::begin_step(bool booking) {
+void Bodies<Real>::begin_step(bool recording) {
   totals_ = {};
-  by_height_.assign(booking ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
+  by_height_.assign(recording ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
   map_.begin_update();
   for (LinkBody& body : bodies_) body.clear_sums();
   if (options_.moments) moments_.assign(bodies_.size(), {});
@@ -95,7 +95,7 @@ void Bodies<Real>::begin_step(bool booking) {
 template <typename Real>
 int Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec3& centre) {
   const int slot = map_.add(id, radius, clump);
-  map_.place(slot, centre);
+  map_.remap(slot, centre);
   resize_to_slots();
   bodies_[static_cast<std::size_t>(slot)].radius = radius;
   return slot;
@@ -119,10 +119,10 @@ void Bodies<Real>::move(int slot, const BodyMotion& motion) {
 
 template <typename Real>
 void Bodies<Real>::move_solid(int solid, const SolidMotion& motion) {
-  move(solid, {motion.place.centre, motion.velocity, motion.angular_velocity, motion.returned.density,
+  move(solid, {motion.transform.centre, motion.velocity, motion.angular_velocity, motion.returned.density,
                motion.returned.slope, 0.0});
   const std::vector<InsideCell> before = solids_.inside(solid);
-  solids_.place(solid, motion.place);
+  solids_.move_to(solid, motion.transform);
   const std::vector<InsideCell>& now = solids_.inside(solid);
   std::vector<InsideCell> turned;
   std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned));
@@ -150,22 +150,22 @@ void Bodies<Real>::refill() {
 template <typename Real>
 void Bodies<Real>::update_links() {
   link_builder_.update(map_, links_);
-  hidden_links_.update(map_);
+  occluded_links_.update(map_);
 }
 
 template <typename Real>
 void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   std::vector<FixedTensor>* moments = options_.moments ? &moments_ : nullptr;
-  LinkPass<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
+  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
   const auto sweep = timer.measure(sweep_phase);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer.measure(links_phase);
     links.apply_tile(tile);
   });
   const auto scope = timer.measure(links_phase);
-  book_links();
-  hidden_links_.apply(bodies_, moments);
-  map_.hidden_patches().apply(map_.bodies(), map_.solids(), surrounding_, reference_density(), bodies_, moments);
+  add_link_totals();
+  occluded_links_.apply(bodies_, moments);
+  map_.occluded_patches().apply(map_.bodies(), map_.solids(), surrounding_, reference_density(), bodies_, moments);
 }
 
 template <typename Real>
@@ -185,7 +185,7 @@ void Bodies<Real>::remove_all() {
 template <typename Real>
 void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) const {
   std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
-  LinkPass<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
+  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
 }
 
@@ -236,7 +236,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
 
 // To be called before forces are added that the fluid does not feel.
 template <typename Real>
-void Bodies<Real>::book_links() {
+void Bodies<Real>::add_link_totals() {
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
     if (map_.bodies()[slot].is_free()) continue;
     const LinkBody& body = bodies_[slot];

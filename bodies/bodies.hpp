@@ -5,7 +5,7 @@
 // A step, in this order:
 //   begin_step()             forgets the last one
 //   add(), remove()          where bodies come into reach of this rank or leave it
-//   move(), place()          the motion of every sphere; cells follow where place() says so
+//   move(), remap()          the motion of every sphere; cells follow where remap() says so
 //   move_solid()             the motion of every solid that moves; its cells follow
 //   settle()                 cells change hands
 //   refill()                 uncovered cells get their populations; collective
@@ -14,9 +14,9 @@
 //   body(slot)               the sums of this rank
 #pragma once
 
-#include "bodies/links/hidden_links.hpp"
+#include "bodies/links/interpolated_bounce_back.hpp"
 #include "bodies/links/link_builder.hpp"
-#include "bodies/links/link_pass.hpp"
+#include "bodies/links/occluded_links.hpp"
 #include "bodies/links/solids.hpp"
 #include "bodies/map/body_map.hpp"
 #include "bodies/map/body_options.hpp"
@@ -57,7 +57,7 @@ struct BodyMotion {
 
 // The same of a solid.
 struct SolidMotion {
-  RigidPlace place;
+  RigidTransform transform;
   Vec3 velocity, angular_velocity;  // of and about the centre of its place
   MassReturn returned;
 };
@@ -85,9 +85,9 @@ public:
   const LinkSums& link_sums(int slot) const { return links_.sums_of(slot); }
   // sum F_a x_b of the step; where BodyOptions::moments asks for it.
   const FixedTensor& moments(int slot) const { return moments_[static_cast<std::size_t>(slot)]; }
-  // What solids hide of every body, by slot (HiddenPatches::by_solids()), which is not in moments().
-  std::vector<std::array<std::int64_t, 3>> hidden_by_solids() const {
-    return map_.hidden_patches().by_solids(bodies_.size(), solids());
+  // What solids hide of every body, by slot (OccludedPatches::by_solids()), which is not in moments().
+  std::vector<std::array<std::int64_t, 3>> occluded_by_solids() const {
+    return map_.occluded_patches().by_solids(bodies_.size(), solids());
   }
   const LinkTable& links() const { return links_; }
   const ExchangeTotals& step_totals() const { return totals_; }
@@ -96,12 +96,12 @@ public:
   double reference_density() const { return options_.links.reference_density; }
   void set_reference_density(double density) { options_.links.reference_density = density; }
 
-  // booking: also sums by height what the fluid gives to bodies (momentum_by_height()).
-  void begin_step(bool booking = false);
+  // recording: also sums by height what the fluid gives to bodies (momentum_by_height()).
+  void begin_step(bool recording = false);
   int add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
   void remove(int slot);                                                    // of a sphere
   void move(int slot, const BodyMotion& motion);
-  void place(int slot, const Vec3& centre) { map_.place(slot, centre); }
+  void remap(int slot, const Vec3& centre) { map_.remap(slot, centre); }
   void move_solid(int solid, const SolidMotion& motion);
   void settle();
   void refill();
@@ -109,14 +109,15 @@ public:
   // Also sweeps the fluid. The time goes to these phases of the timer.
   void sweep(PhaseTimer& timer, int sweep_phase, int links_phase);
 
-  // Cells and links without a step, as at a start: nothing is refilled. After begin_step(), add() and place().
+  // Cells and links without a step, as at a start: nothing is refilled. After begin_step(), add() and remap().
   void settle_at_start();
   void remove_all();  // spheres
 
-  // Fills the slots that links fill, as the sweep will do again, and changes no body. by_height: as for LinkPass.
+  // Fills the slots that links fill, as the sweep will do again, and changes no body. by_height: as for
+  // InterpolatedBounceBack.
   void apply_links_on_copies(std::vector<FixedVec3>* by_height = nullptr) const;
-  // The momentum that links and covered cells give to bodies in the step that was begun with booking, by half planes
-  // of cells (LinkPass); before its sweep, whose slots it fills as well.
+  // The momentum that links and covered cells give to bodies in the step that was begun with recording, by half planes
+  // of cells (InterpolatedBounceBack); before its sweep, whose slots it fills as well.
   const std::vector<FixedVec3>& momentum_by_height();
 
 private:
@@ -124,7 +125,7 @@ private:
   void resize_to_slots();
   void account_for_covered_cells();
   void keep_momentum(LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
-  void book_links();
+  void add_link_totals();
 
   lbm::Fluid<Real>& fluid_;
   BodyOptions options_;
@@ -134,12 +135,12 @@ private:
   LinkTable links_;
   Solids solids_;
   LinkBuilder link_builder_;
-  HiddenLinks hidden_links_;
+  OccludedLinks occluded_links_;
   Refill refill_;
   std::vector<LinkBody> bodies_;      // by slot
   std::vector<double> surrounding_;   // by slot
   std::vector<FixedTensor> moments_;  // by slot; empty unless measured
-  std::vector<FixedVec3> by_height_;  // empty unless booking
+  std::vector<FixedVec3> by_height_;  // empty unless recording
   ExchangeTotals totals_;
 };
 

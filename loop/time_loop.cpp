@@ -98,7 +98,7 @@ void TimeLoop::run() {
   Decision decision = Decision::go_on;
   while (system_.step() < final_step_ && decision == Decision::go_on) {
     const WallClock::time_point before = WallClock::now();
-    if (needs_momentum_at(system_.step() + 1)) system_.book_momentum();
+    if (needs_momentum_at(system_.step() + 1)) system_.record_momentum();
     system_.advance();
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();

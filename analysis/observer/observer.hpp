@@ -26,7 +26,7 @@ public:
   // True for one that may measure in every step: its measurements alone do not trigger a check of the system's health.
   virtual bool in_passing() const { return false; }
 
-  // Whether it looks at Snapshot::momentum, which a system books when asked before the step.
+  // Whether it looks at Snapshot::momentum, which a system records when asked before the step.
   virtual bool needs_momentum() const { return false; }
 
   // Takes one measurement. Collective: every rank calls it at the same steps.

@@ -41,9 +41,9 @@ void StressBalance::observe(const Snapshot& snapshot) {
   add_grains_at_walls(snapshot);
 }
 
-void StressBalance::add_fluid(const MomentumBook& book) {
-  for (std::size_t z = 0; z < book.planes.size(); ++z) {
-    const PlaneMomentum& plane = book.planes[z];
+void StressBalance::add_fluid(const MomentumBudget& budget) {
+  for (std::size_t z = 0; z < budget.planes.size(); ++z) {
+    const PlaneMomentum& plane = budget.planes[z];
     double* sums = fluid_.data() + z * fluid_columns;
     const auto cells_here = static_cast<double>(plane.cells);
     sums[cells] += cells_here;
@@ -54,12 +54,12 @@ void StressBalance::add_fluid(const MomentumBook& book) {
       sums[viscous + p] += plane.viscous[p];
       sums[subgrid + p] += plane.subgrid[p];
     }
-    driving_[z] += book.driving.x() * cells_here;
+    driving_[z] += budget.driving.x() * cells_here;
   }
-  driving_.back() += book.on_top.x();
+  driving_.back() += budget.on_top.x();
   for (std::size_t h = 0; h < given_.size(); ++h) {
-    given_[h] += book.on_grains[h].x();
-    sides_[h] += book.on_sides[h].x();
+    given_[h] += budget.on_grains[h].x();
+    sides_[h] += budget.on_sides[h].x();
   }
 }
 

@@ -72,7 +72,7 @@ public:
   std::string name() const override { return "stress_balance"; }
   double every() const override { return keys_.every; }
   bool needs_momentum() const override { return true; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before, or not booked, does not count
+  void observe(const Snapshot& snapshot) override;  // a step seen before, or not recorded, does not count
   std::vector<Diagnostic> diagnostics() const override { return {}; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
@@ -124,7 +124,7 @@ private:
     int layer = 0;
   };
 
-  void add_fluid(const MomentumBook& book);
+  void add_fluid(const MomentumBudget& budget);
   void add_grains(const Snapshot& snapshot);
   void give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const;
   void add_grains_at_walls(const Snapshot& snapshot);

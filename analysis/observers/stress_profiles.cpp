@@ -107,7 +107,7 @@ double StressBalance::above(int layer, GrainColumn force, GrainColumn lever) con
   return above(layer, grains_, grain_columns, force, lever);
 }
 
-// The same of what is booked where it acts.
+// The same of what is recorded where it acts.
 double StressBalance::by_height_above(const std::vector<double>& half_planes, int layer) const {
   const double from = layers_.first_plane(layer), planes = layers_.first_plane(layer + 1) - from;
   double sum = 0.0;

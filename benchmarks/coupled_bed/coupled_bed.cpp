@@ -107,7 +107,7 @@ lbm::CollisionParameters collision_of(const Box& box) {
   lbm::CollisionParameters p;
   p.relaxation_time = units.relaxation_time(1e-6);
   p.model = box.published ? lbm::CollisionModel::bgk : lbm::CollisionModel::trt_at_bodies;
-  p.magic_parameter = lbm::usual_magic_parameter(p.model);
+  p.magic_parameter = lbm::traits_of(p.model).usual_magic_parameter;
   p.subgrid = box.published ? lbm::Subgrid::smagorinsky(0.27) : lbm::Subgrid::qr();
   p.bulk_relaxation_time = 1.0;
   p.force[0] = box.slope * gravity / units.acceleration();

@@ -31,11 +31,7 @@ namespace {
 constexpr double excesses[] = {1e-1, 5e-2, 3e-2, 2e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};  // tau - 1/2
 constexpr double velocities[] = {0.02, 0.05, 0.1, 0.15};
 
-struct Model {
-  const char* name;
-  lbm::CollisionModel model;
-};
-constexpr Model models[] = {{"bgk", lbm::CollisionModel::bgk}, {"trt", lbm::CollisionModel::trt}};
+constexpr lbm::CollisionModel models[] = {lbm::CollisionModel::bgk, lbm::CollisionModel::trt};
 
 struct Eddies {
   const char* name;
@@ -152,12 +148,12 @@ std::string fastest_stable(Setting s, const char* none, Survives survives) {
 template <typename Survives>
 void print_map(const char* title, const Eddies& eddies, Survives survives) {
   fmt::print("\n{}, {}: largest lattice velocity that stays stable\n\n| tau - 1/2 |", title, eddies.name);
-  for (const Model& m : models) fmt::print(" {} |", m.name);
+  for (const lbm::CollisionModel m : models) fmt::print(" {} |", lbm::traits_of(m).name);
   fmt::print("\n|---|---|---|\n");
   for (const double excess : excesses) {
     fmt::print("| {:g} |", excess);
-    for (const Model& m : models)
-      fmt::print(" {} |", fastest_stable({m.model, excess, 0.0, eddies.model}, "unstable", survives));
+    for (const lbm::CollisionModel m : models)
+      fmt::print(" {} |", fastest_stable({m, excess, 0.0, eddies.model}, "unstable", survives));
     fmt::print("\n");
     std::fflush(stdout);
   }
@@ -170,9 +166,8 @@ void print_noise(const Eddies& eddies) {
   fmt::print("| tau - 1/2 | bgk | trt |\n|---|---|---|\n");
   for (const double excess : excesses) {
     fmt::print("| {:g} |", excess);
-    for (const Model& m : models)
-      fmt::print(" {:.2f} |",
-                 100.0 / velocity * follow_noise({m.model, excess, velocity, eddies.model}, true, 6000).end);
+    for (const lbm::CollisionModel m : models)
+      fmt::print(" {:.2f} |", 100.0 / velocity * follow_noise({m, excess, velocity, eddies.model}, true, 6000).end);
     fmt::print("\n");
   }
   std::fflush(stdout);
@@ -182,15 +177,15 @@ void print_noise(const Eddies& eddies) {
 void print_bulk(double bulk) {
   for (const double excess : {1e-2, 1e-3, 1e-4}) {
     fmt::print("| {:g} | {:g} |", bulk, excess);
-    for (const Model& m : models) {
-      const Setting s{m.model, excess, 0.0, lbm::Subgrid::none(), bulk};
+    for (const lbm::CollisionModel m : models) {
+      const Setting s{m, excess, 0.0, lbm::Subgrid::none(), bulk};
       fmt::print(" {} / {} / {} |", fastest_stable(s, "-", vortex_survives),
                  fastest_stable(s, "-", [](const Setting& t) { return noise_dies(t, false); }),
                  fastest_stable(s, "-", [](const Setting& t) { return noise_dies(t, true); }));
     }
-    for (const Model& m : models)
+    for (const lbm::CollisionModel m : models)
       fmt::print(" {:.2f} |",
-                 1e3 * follow_noise({m.model, excess, 0.1, lbm::Subgrid::smagorinsky(0.27), bulk}, true, 6000).end);
+                 1e3 * follow_noise({m, excess, 0.1, lbm::Subgrid::smagorinsky(0.27), bulk}, true, 6000).end);
     fmt::print("\n");
     std::fflush(stdout);
   }
@@ -198,8 +193,8 @@ void print_bulk(double bulk) {
 
 void run_bulk(int count, char** times) {
   fmt::print("| tau_b | tau - 1/2 |");
-  for (const Model& m : models) fmt::print(" {} |", m.name);
-  for (const Model& m : models) fmt::print(" {}, noise |", m.name);
+  for (const lbm::CollisionModel m : models) fmt::print(" {} |", lbm::traits_of(m).name);
+  for (const lbm::CollisionModel m : models) fmt::print(" {}, noise |", lbm::traits_of(m).name);
   fmt::print("\n|---|---|---|---|---|---|\n");
   for (int n = 0; n < count; ++n) print_bulk(std::atof(times[n]));
 }

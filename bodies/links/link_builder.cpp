@@ -89,11 +89,11 @@ void LinkBuilder::rebuild_solid(int slot, const std::vector<int>& tiles, LinkTab
 
 void LinkBuilder::rebuild(int slot, const MappedBody& sphere, LinkTable& table) {
   const double half_width = sphere.radius + longest_link;
-  std::vector<LocalCell>* places[2] = {&xs_, &ys_};
+  std::vector<LocalCell>* cells_along[2] = {&xs_, &ys_};
   const auto before = [](const LocalCell& p, const LocalCell& q) { return p.local < q.local; };
   const auto same = [](const LocalCell& p, const LocalCell& q) { return p.local == q.local; };
   for (int a = 0; a < 2; ++a) {
-    std::vector<LocalCell>& cells = *places[a];
+    std::vector<LocalCell>& cells = *cells_along[a];
     local_cells_.along(a, sphere.centre[a], half_width, sphere.centre[a], 0, cells);
     std::sort(cells.begin(), cells.end(), before);
     cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
@@ -137,12 +137,12 @@ void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
   std::int32_t hit[Cells::size()];
   hits.copy_to(hit, unaligned);
   for (int k = 0; k < count; ++k) {
-    const std::uint32_t place = LinkPlace::of(x + k, y);
+    const std::uint32_t xy = LinkXY::of(x + k, y);
     if (hit[k] == 0) continue;
     const bool enclosed = enclosed_.contains({x + k, y, z});
     for (auto left = static_cast<std::uint32_t>(hit[k]); left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
-      links_.push_back({place, LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});
+      links_.push_back({xy, LinkTag::of(i, row[k - indexing.offset(i)], enclosed)});
     }
   }
 }

@@ -13,12 +13,12 @@
 namespace thalweg::bodies {
 
 // The cells of a block as integers, with the nearest periodic image.
-struct BlockPlace {
+struct BlockFrame {
   int lower[3];   // of the block in the domain
   int period[3];  // cells of the domain; 0: not periodic
   int half[3];
 
-  BlockPlace(const PeriodicBox& box, const Index3& block_lower) {
+  BlockFrame(const PeriodicBox& box, const Index3& block_lower) {
     for (int a = 0; a < 3; ++a) {
       lower[a] = block_lower[a];
       period[a] = box.periodic[a] ? static_cast<int>(box.size[a]) : 0;
@@ -40,10 +40,9 @@ namespace detail {
 
 // As find_crossings(). `wraps`: whether a link may be nearer to another image of the centre.
 template <bool wraps, typename Real>
-[[gnu::always_inline]] inline void cross_links(Sphere sphere, const Vec3& centre, const BlockPlace& block, int z,
-                                               const std::uint32_t* __restrict places,
-                                               const std::uint32_t* __restrict tags, int count,
-                                               Real* __restrict distance, Real* __restrict arm_x,
+[[gnu::always_inline]] inline void cross_links(Sphere sphere, const Vec3& centre, const BlockFrame& block, int z,
+                                               const std::uint32_t* __restrict xy, const std::uint32_t* __restrict tags,
+                                               int count, Real* __restrict distance, Real* __restrict arm_x,
                                                Real* __restrict arm_y, Real* __restrict arm_z) {
   int from[3];
   Real rest[3];
@@ -64,10 +63,10 @@ template <bool wraps, typename Real>
   for (int first = 0; first < count; first += links_at_a_time) {
     const int end = first + links_at_a_time;
     for (int k = first; k < end; ++k) {
-      const int tag = static_cast<int>(tags[k]), place = static_cast<int>(places[k]);
+      const int tag = static_cast<int>(tags[k]), xy = static_cast<int>(xy[k]);
       const int cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
-      const int x = static_cast<int>(place & static_cast<int>(LinkPlace::x_mask)),
-                y = place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask);
+      const int x = static_cast<int>(xy & static_cast<int>(LinkXY::x_mask)),
+                y = xy >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask);
       const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
       const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
       const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];
@@ -96,13 +95,13 @@ template <bool wraps, typename Real>
 // Coordinates are relative to a whole number near the centre, so that no digits are lost far from the origin; the
 // nearest image is that of the solid cell, which is inside.
 template <typename Real>
-inline void find_crossings(const Sphere& sphere, const Vec3& centre, const BlockPlace& block, int z,
-                           const std::uint32_t* places, const std::uint32_t* tags, int count, Real* distance,
-                           Real* arm_x, Real* arm_y, Real* arm_z) {
+inline void find_crossings(const Sphere& sphere, const Vec3& centre, const BlockFrame& block, int z,
+                           const std::uint32_t* xy, const std::uint32_t* tags, int count, Real* distance, Real* arm_x,
+                           Real* arm_y, Real* arm_z) {
   if (block.may_wrap(centre, sphere.radius))
-    detail::cross_links<true>(sphere, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
+    detail::cross_links<true>(sphere, centre, block, z, xy, tags, count, distance, arm_x, arm_y, arm_z);
   else
-    detail::cross_links<false>(sphere, centre, block, z, places, tags, count, distance, arm_x, arm_y, arm_z);
+    detail::cross_links<false>(sphere, centre, block, z, xy, tags, count, distance, arm_x, arm_y, arm_z);
 }
 
 }  // namespace thalweg::bodies

@@ -1,6 +1,6 @@
 // Rules of interpolated bounce-back on a moving wall: what comes back over a link is
 //   f_i'(x_f, t+1) = incident f_i^c(x_f) + second (the rule's second value) - wall w_i rho c_i.u_w.
-// Lattice units; symbols as in link_pass.hpp. Either rule is exact in a fluid that moves with the wall.
+// Lattice units; symbols as in interpolated_bounce_back.hpp. Either rule is exact in a fluid that moves with the wall.
 #pragma once
 
 #include "lbm/lattice/pack_constant.hpp"

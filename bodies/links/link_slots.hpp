@@ -48,7 +48,7 @@ public:
   // within its plane of cells; the slots of f_i^c(x_f), of f_i^c(x_ff) where delta < 1/2 or else f_i'^c(x_f), and of
   // the incoming f_i'.
   template <typename Real>
-  void find(int z, const std::uint32_t* __restrict places, const std::uint32_t* __restrict tags, int count,
+  void find(int z, const std::uint32_t* __restrict xy, const std::uint32_t* __restrict tags, int count,
             const Real* __restrict distance, std::int32_t* __restrict cells, std::int32_t* __restrict incident,
             std::int32_t* __restrict second, std::int32_t* __restrict reflected) const {
     using Pack = std::experimental::native_simd<Real>;
@@ -56,9 +56,9 @@ public:
     constexpr auto unaligned = std::experimental::element_aligned;
     const int start = (z + 1) * plane_, corner = first_ - plane_;
     for (int k = 0; k < count; k += static_cast<int>(Pack::size())) {
-      const Ints place(places + k, unaligned), tag(tags + k, unaligned);
-      const Ints cell = corner + (place >> LinkPlace::y_shift & static_cast<int>(LinkPlace::x_mask)) * row_ +
-                        (place & static_cast<int>(LinkPlace::x_mask));
+      const Ints xy(xy + k, unaligned), tag(tags + k, unaligned);
+      const Ints cell = corner + (xy >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask)) * row_ +
+                        (xy & static_cast<int>(LinkXY::x_mask));
       const Ints i = tag & static_cast<int>(LinkTag::direction_mask), opposite = ((i - 1) ^ 1) + 1;
       const Ints along = along_link(tag);
       // Planes count from the middle one: products beyond 9 strides would not fit into 32 bits.

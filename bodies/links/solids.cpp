@@ -43,13 +43,13 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
       groups_(1) {
   for (int a = 0; a < 3; ++a) {
     const int all = decomposition.cells()[a], layers = 2;
-    places_[a].resize(all);
+    locals_[a].resize(all);
     for (int local = -layers; local < block_.size()[a] + layers; ++local) {
       const int global = block_.lower[a] + local;
       if (decomposition.periodic()[a])
-        places_[a][(global % all + all) % all].push_back(local);
+        locals_[a][(global % all + all) % all].push_back(local);
       else if (global >= 0 && global < all)
-        places_[a][global].push_back(local);
+        locals_[a][global].push_back(local);
     }
   }
   if (!solids.empty()) inside_.resize(cells.indexing().count());
@@ -65,10 +65,10 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
   for (Group& group : groups_) update(group);
 }
 
-void Solids::place(int solid, const RigidPlace& place) {
+void Solids::move_to(int solid, const RigidTransform& transform) {
   const auto s = static_cast<std::size_t>(solid);
-  move(at_start_[s], place, present_[s]);
-  centres_[s] = place.centre;
+  move(at_start_[s], transform, present_[s]);
+  centres_[s] = transform.centre;
   update(groups_[group_of_[s]]);
 }
 
@@ -109,9 +109,9 @@ void Solids::visit_inside(const SolidSphere& sphere, const VisitCell& visit) con
       for (int y = cells[1].first; y < cells[1].second; ++y)
         for (int x = cells[0].first; x < cells[0].second; ++x) {
           if (!Sphere{sphere.radius}.holds(centre_of({x, y, z}) - centre)) continue;
-          for (const int lz : places_[2][z])
-            for (const int ly : places_[1][y])
-              for (const int lx : places_[0][x]) visit({lx, ly, lz});
+          for (const int lz : locals_[2][z])
+            for (const int ly : locals_[1][y])
+              for (const int lx : locals_[0][x]) visit({lx, ly, lz});
         }
   });
 }
@@ -129,7 +129,7 @@ void Solids::visit_inside(const TriangleMesh& mesh, const VisitCell& visit) cons
       const auto [z_begin, z_end] = range(extent.lower[2], extent.upper[2], round_off, 0, n[2]);
       for (int z = z_begin; z < z_end; ++z)
         for (int y = y_begin; y < y_end; ++y) {
-          if (places_[1][y].empty() || places_[2][z].empty()) continue;
+          if (locals_[1][y].empty() || locals_[2][z].empty()) continue;
           if (const auto hit = crossing(corners, y + 0.5, z + 0.5))
             rows[static_cast<std::int64_t>(z) * n[1] + y].push_back(*hit);
         }
@@ -141,13 +141,13 @@ void Solids::visit_inside(const TriangleMesh& mesh, const VisitCell& visit) cons
     const auto [first, last] = std::minmax_element(hits.begin(), hits.end(), by_x);
     const auto [x_begin, x_end] = range(first->x, last->x, round_off, 0, n[0]);
     for (int x = x_begin; x < x_end; ++x) {
-      if (places_[0][x].empty()) continue;
+      if (locals_[0][x].empty()) continue;
       int winding = 0;
       for (const Crossing& hit : hits) winding += hit.x < x + 0.5 ? hit.winding : 0;
       if (winding <= 0) continue;
-      for (const int lz : places_[2][z])
-        for (const int ly : places_[1][y])
-          for (const int lx : places_[0][x]) visit({lx, ly, lz});
+      for (const int lz : locals_[2][z])
+        for (const int ly : locals_[1][y])
+          for (const int lx : locals_[0][x]) visit({lx, ly, lz});
     }
   }
 }
@@ -254,7 +254,7 @@ void Solids::find_links(int solid, int tile, const EnclosedCells& enclosed, std:
   for (auto cut = first; cut != end; ++cut) {
     const Index3& at = cut->local;
     if (!cells_.is_fluid(cut->cell)) continue;
-    const Vec3 place = centre_of({block_.lower[0] + at[0], block_.lower[1] + at[1], block_.lower[2] + at[2]});
+    const Vec3 from = centre_of({block_.lower[0] + at[0], block_.lower[1] + at[1], block_.lower[2] + at[2]});
     const bool is_enclosed = enclosed.contains(at);
     for (int i = 1; i < D3Q19::directions; ++i) {
       if (cells_.body(cut->cell + cells_.indexing().offset(i)) != solid) continue;
@@ -262,9 +262,9 @@ void Solids::find_links(int solid, int tile, const EnclosedCells& enclosed, std:
       double way = std::min(cut->distances[static_cast<std::size_t>(i)], 1.0);
       for (const Group& other : groups_)
         if (&other != &group(solid)) way = std::min(way, distance(other, cut->cell, i));
-      const Vec3 arm = box_.difference(place + way * velocity_of(i), centre(solid));
+      const Vec3 arm = box_.difference(from + way * velocity_of(i), centre(solid));
       const std::int32_t upstream = cells_.body(cut->cell - cells_.indexing().offset(i));
-      links.push_back({LinkPlace::of(at[0], at[1]), LinkTag::of(i, upstream, is_enclosed)});
+      links.push_back({LinkXY::of(at[0], at[1]), LinkTag::of(i, upstream, is_enclosed)});
       crossings.push_back({static_cast<float>(way),
                            {static_cast<float>(arm[0]), static_cast<float>(arm[1]), static_cast<float>(arm[2])}});
     }

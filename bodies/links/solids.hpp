@@ -53,7 +53,7 @@ public:
   const Vec3& centre(int solid) const { return centres_[static_cast<std::size_t>(solid)]; }
 
   // Moves a solid that moves, with its cells and distances, to a place.
-  void place(int solid, const RigidPlace& place);
+  void move_to(int solid, const RigidTransform& transform);
 
   // Calls claim(cell) for every cell inside the solids at the start: once where several that stand still have it, and
   // again for each that moves. Those of solids that stand still are then forgotten.
@@ -118,7 +118,7 @@ private:
   std::vector<std::size_t> group_of_;
   // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and in the layers of periodic
   // axes.
-  std::array<std::vector<std::vector<int>>, 3> places_;
+  std::array<std::vector<std::vector<int>>, 3> locals_;
   std::vector<std::uint8_t> inside_;  // scratch: of every cell in memory, whether it is inside the group at hand
 };
 

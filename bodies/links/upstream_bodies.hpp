@@ -1,5 +1,5 @@
 // Links whose upstream cell x_ff = x_f - c_i a body covers: x_f is a gap of one cell between that body and the one the
-// link runs into. A batch of them, with what stands in for f_i^c(x_ff). Symbols as in link_pass.hpp.
+// link runs into. A batch of them, with what stands in for f_i^c(x_ff). Symbols as in interpolated_bounce_back.hpp.
 #pragma once
 
 #include "bodies/map/link_table.hpp"

@@ -14,7 +14,7 @@ int BodyMap::slot_of(GlobalId id) const {
 
 void BodyMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot) {
   changes_.push_back({local, cells_.body(cell), slot});
-  hidden_patches_.cell_changes(local, slot);
+  occluded_patches_.cell_changes(local, slot);
   cells_.assign(local[0], local[1], local[2], slot);
 }
 
@@ -131,34 +131,34 @@ void BodyMap::add_solids(const std::vector<bool>& moves) {
 }
 
 void BodyMap::remove(int slot) {
-  place(slot, Vec3::Constant(2.0 * nowhere));
+  remap(slot, Vec3::Constant(2.0 * nowhere));
   slot_of_id_.erase(body(slot).id);
   body(slot).id = MappedBody::nobody;
   free_slots_.push_back(slot);
 }
 
-void BodyMap::place(int slot, const Vec3& centre) {
+void BodyMap::remap(int slot, const Vec3& centre) {
   const Vec3 reach = Vec3::Constant(body(slot).radius);
   const Vec3 old = body(slot).centre;
   body(slot).centre = centre;
   const bool was_here = old.x() > nowhere, is_here = centre.x() > nowhere;
   if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
     // Which cells are near the edge of both spheres is decided as if they were a little larger.
-    turn_cells(slot, centre, reach + (centre - old).cwiseAbs() + Vec3::Constant(1e-6), old, centre);
+    toggle_cells(slot, centre, reach + (centre - old).cwiseAbs() + Vec3::Constant(1e-6), old, centre);
   } else {
-    if (was_here) turn_cells(slot, old, reach, old, centre);
-    if (is_here) turn_cells(slot, centre, reach, old, centre);
+    if (was_here) toggle_cells(slot, old, reach, old, centre);
+    if (is_here) toggle_cells(slot, centre, reach, old, centre);
   }
 }
 
 // Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
 // claims of the others stays.
-void BodyMap::turn_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now) {
+void BodyMap::toggle_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
     local_cells_.along(a, middle[a], half_width[a], old[a], layers, before_[a]);
     local_cells_.along(a, middle[a], half_width[a], now[a], layers, after_[a]);
   }
-  const auto offset = [](const LocalCell& place) { return place.offset; };
+  const auto offset = [](const LocalCell& cell) { return cell.offset; };
   x_before_.resize(before_[0].size());
   x_after_.resize(after_[0].size());
   std::transform(before_[0].begin(), before_[0].end(), x_before_.begin(), offset);
@@ -168,11 +168,11 @@ void BodyMap::turn_cells(int slot, const Vec3& middle, const Vec3& half_width, c
     for (std::size_t y = 0; y < after_[1].size(); ++y) {
       const Sphere::Chord before = sphere.chord(before_[1][y].offset, before_[2][z].offset),
                           after = sphere.chord(after_[1][y].offset, after_[2][z].offset);
-      if (!before.missed() || !after.missed()) turn_row(slot, after_[1][y].local, after_[2][z].local, before, after);
+      if (!before.missed() || !after.missed()) toggle_row(slot, after_[1][y].local, after_[2][z].local, before, after);
     }
 }
 
-void BodyMap::turn_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after) {
+void BodyMap::toggle_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after) {
   const std::size_t width = x_after_.size();
   turns_.resize(width);
   unsigned any = 0;

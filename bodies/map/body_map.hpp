@@ -4,9 +4,9 @@
 // keeps its slot as long as it is in reach of this rank; slots also index the table of LinkBody.
 #pragma once
 
-#include "bodies/map/hidden_patches.hpp"
 #include "bodies/map/local_cells.hpp"
 #include "bodies/map/mapped_body.hpp"
+#include "bodies/map/occluded_patches.hpp"
 #include "core/geometry/sphere.hpp"
 #include "core/parallel/decomposition.hpp"
 #include "lbm/lattice/cell_map.hpp"
@@ -25,7 +25,7 @@ struct CellChange {
 class BodyMap {
 public:
   BodyMap(const Decomposition& decomposition, const Block& block, lbm::CellMap& cells)
-      : cells_(cells), local_cells_(decomposition, block), hidden_patches_(decomposition, block, cells) {}
+      : cells_(cells), local_cells_(decomposition, block), occluded_patches_(decomposition, block, cells) {}
 
   const std::vector<MappedBody>& bodies() const { return bodies_; }  // by slot; a free one has the id -1
   int slot_of(GlobalId id) const;                                    // -1 if the body is not here
@@ -44,7 +44,7 @@ public:
 
   void begin_update();  // forgets the changes of the last update
   // Moves a body: its cells are those inside its sphere at `centre`. Changes are collected until settle().
-  void place(int slot, const Vec3& centre);
+  void remap(int slot, const Vec3& centre);
   // Ends an update: returns what changed, each cell once, sorted. Valid until begin_update().
   const std::vector<CellChange>& settle();
   const std::vector<CellChange>& changes() const { return changes_; }
@@ -52,7 +52,7 @@ public:
   // Whether a body covers a cell, which is in memory or in the layer around that.
   bool covers(const Index3& local) const;
 
-  const HiddenPatches& hidden_patches() const { return hidden_patches_; }  // of the bodies' present cells
+  const OccludedPatches& occluded_patches() const { return occluded_patches_; }  // of the bodies' present cells
 
 private:
   static constexpr double nowhere = -1e8;  // no body's centre is below this
@@ -61,15 +61,15 @@ private:
   MappedBody& body(int slot) { return bodies_[static_cast<std::size_t>(slot)]; }
   // Claims or gives up the cells within `half_width` of `middle` along each axis that are inside the body at only one
   // of the two places of its centre.
-  void turn_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now);
-  void turn_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after);
+  void toggle_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now);
+  void toggle_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after);
   void assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot);
   void withdraw(int slot, std::ptrdiff_t cell);
   std::ptrdiff_t key_beyond(const Index3& local) const;
 
   lbm::CellMap& cells_;
   LocalCells local_cells_;
-  HiddenPatches hidden_patches_;
+  OccludedPatches occluded_patches_;
   std::vector<MappedBody> bodies_;
   int solids_ = 0;
   std::vector<int> free_slots_;
@@ -77,7 +77,7 @@ private:
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // of cells that a lower id has
   std::unordered_map<std::ptrdiff_t, std::vector<int>> beyond_;     // who claims cells of the second layer
   std::vector<CellChange> changes_;
-  // Scratch of turn_cells: cells along each axis from the two centres; of a row, who turns.
+  // Scratch of toggle_cells: cells along each axis from the two centres; of a row, who turns.
   std::vector<LocalCell> before_[3], after_[3];
   std::vector<double> x_before_, x_after_;
   std::vector<unsigned> turns_;

@@ -1,4 +1,4 @@
-// Options of the bodies in the fluid and their links (link_pass.hpp).
+// Options of the bodies in the fluid and their links (interpolated_bounce_back.hpp).
 #pragma once
 
 #include "core/base/types.hpp"

@@ -1,5 +1,6 @@
 // Fluid cells that are shut in, alone or two together: no other fluid is beside them, only bodies and walls. Nothing
-// flows out of them, so what their links add would pile up; the links of such cells let it go (link_pass.hpp).
+// flows out of them, so what their links add would pile up; the links of such cells let it go
+// (interpolated_bounce_back.hpp).
 #pragma once
 
 #include "bodies/map/body_map.hpp"

@@ -37,20 +37,20 @@ Mat3 LinkSums::second() const {
 void LinkStream::prefetch(std::size_t first, std::size_t count) const {
   constexpr std::size_t line = 64 / sizeof(std::uint32_t);  // links in a cache line
   for (std::size_t k = first; k < first + count + line; k += line) {
-    __builtin_prefetch(place.data() + k);
+    __builtin_prefetch(xy.data() + k);
     __builtin_prefetch(tag.data() + k);
   }
 }
 
 void LinkStream::resize(std::size_t size) {
-  place.resize(size);
+  xy.resize(size);
   tag.resize(size);
   if (!crossing.empty()) crossing.resize(size);
 }
 
 void LinkStream::fill_up(std::size_t end, std::size_t copies) {
   for (std::size_t k = end; k < end + copies; ++k) {
-    place[k] = place[end - 1];
+    xy[k] = xy[end - 1];
     tag[k] = tag[end - 1];
     if (!crossing.empty()) crossing[k] = crossing[end - 1];
   }
@@ -89,60 +89,60 @@ void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
   tile.chunks[chunk].body = -1;
   tile.chunks[chunk].count = 0;
   tile.free_chunks.push_back(chunk);
-  tile.in_order = tile.runs_current = false;
+  tile.in_order = tile.ranges_current = false;
 }
 
 void LinkTable::replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
   if (body >= LinkTag::bodies) throw std::logic_error("more bodies than a tag can tell apart (Bodies::check_count())");
-  if (static_cast<std::size_t>(body) >= places_.size()) {
-    places_.resize(body + 1);
+  if (static_cast<std::size_t>(body) >= chunks_of_.size()) {
+    chunks_of_.resize(body + 1);
     sums_.resize(body + 1);
   }
-  std::vector<Location>& places = places_[body];
-  const auto place = std::find_if(places.begin(), places.end(), [tile](const Location& p) { return p.tile == tile; });
+  std::vector<TileChunk>& own = chunks_of_[body];
+  const auto found = std::find_if(own.begin(), own.end(), [tile](const TileChunk& p) { return p.tile == tile; });
   Tile& t = tiles_[tile];
   if (links.empty()) {
-    if (place == places.end()) return;
-    drop_chunk(t, place->chunk);
-    places.erase(place);
+    if (found == own.end()) return;
+    drop_chunk(t, found->chunk);
+    own.erase(found);
     return;
   }
-  const std::uint32_t chunk = place == places.end() ? new_chunk(t, body) : place->chunk;
-  if (place == places.end()) places.push_back({tile, chunk});
+  const std::uint32_t chunk = found == own.end() ? new_chunk(t, body) : found->chunk;
+  if (found == own.end()) own.push_back({tile, chunk});
   put(t, t.chunks[chunk], links, crossings);
 }
 
 void LinkTable::remove(int body) {
-  if (static_cast<std::size_t>(body) >= places_.size()) return;
-  for (const Location& place : places_[body]) drop_chunk(tiles_[place.tile], place.chunk);
-  places_[body].clear();
+  if (static_cast<std::size_t>(body) >= chunks_of_.size()) return;
+  for (const TileChunk& there : chunks_of_[body]) drop_chunk(tiles_[there.tile], there.chunk);
+  chunks_of_[body].clear();
 }
 
-const std::vector<LinkTable::Run>& LinkTable::runs_in_order(int tile) const {
+const std::vector<LinkTable::LinkRange>& LinkTable::ranges_in_order(int tile) const {
   Tile& t = tiles_[tile];
   if (!t.in_order) {
     t.order.clear();
     for (std::uint32_t c = 0; c < t.chunks.size(); ++c)
       if (t.chunks[c].count > 0) t.order.push_back(c);
     std::sort(t.order.begin(), t.order.end(), [&t](std::uint32_t a, std::uint32_t b) {
-      return t.links.place[t.chunks[a].first] < t.links.place[t.chunks[b].first];
+      return t.links.xy[t.chunks[a].first] < t.links.xy[t.chunks[b].first];
     });
     t.in_order = true;
-    t.runs_current = false;
+    t.ranges_current = false;
   }
-  if (!t.runs_current) {
-    t.runs.clear();
+  if (!t.ranges_current) {
+    t.ranges.clear();
     for (const std::uint32_t c : t.order) {
       const Chunk& chunk = t.chunks[c];
-      t.runs.push_back({chunk.body, chunk.first, chunk.count, chunk.covered});
+      t.ranges.push_back({chunk.body, chunk.first, chunk.count, chunk.narrow});
     }
-    t.runs_current = true;
+    t.ranges_current = true;
   }
-  return t.runs;
+  return t.ranges;
 }
 
 void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
-  tile.runs_current = false;
+  tile.ranges_current = false;
   tile.live += links.size();
   tile.live -= chunk.count;
   tile.filled += padded(links.size());
@@ -154,16 +154,16 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
     tile.end += chunk.capacity;
     tile.links.resize(tile.end);
   }
-  if (!crossings.empty()) tile.links.crossing.resize(tile.links.place.size());
+  if (!crossings.empty()) tile.links.crossing.resize(tile.links.xy.size());
   LinkSums& sums = sums_[static_cast<std::size_t>(chunk.body)];
   sums -= chunk.sums;
-  const auto is_covered = [](const Link& link) { return LinkTag::is_covered(link.tag); };
-  chunk.covered = static_cast<std::uint32_t>(std::count_if(links.begin(), links.end(), is_covered));
-  std::uint32_t next[2] = {chunk.first + chunk.covered, chunk.first};  // of those not covered, of those covered
+  const auto is_narrow = [](const Link& link) { return LinkTag::is_narrow(link.tag); };
+  chunk.narrow = static_cast<std::uint32_t>(std::count_if(links.begin(), links.end(), is_narrow));
+  std::uint32_t next[2] = {chunk.first + chunk.narrow, chunk.first};  // of those not covered, of those covered
   std::array<int, lbm::D3Q19::directions> by_direction{};
   for (std::size_t k = 0; k < links.size(); ++k) {
-    const std::uint32_t at = next[is_covered(links[k])]++;
-    tile.links.place[at] = links[k].place;
+    const std::uint32_t at = next[is_narrow(links[k])]++;
+    tile.links.xy[at] = links[k].xy;
     tile.links.tag[at] = links[k].tag;
     if (!crossings.empty()) tile.links.crossing[at] = crossings[k];
     ++by_direction[links[k].tag & LinkTag::direction_mask];
@@ -185,7 +185,7 @@ void LinkTable::compact(Tile& tile) {
       if (from.empty()) return;
       std::copy_n(from.begin() + chunk.first, padded(chunk.count), to.begin() + static_cast<std::ptrdiff_t>(end));
     };
-    move(tile.links.place, packed.place);
+    move(tile.links.xy, packed.xy);
     move(tile.links.tag, packed.tag);
     move(tile.links.crossing, packed.crossing);
     chunk.first = static_cast<std::uint32_t>(end);

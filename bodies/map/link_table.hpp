@@ -21,7 +21,7 @@
 namespace thalweg::bodies {
 
 // The fluid cell x_f of a link in its plane: owned local coordinates x and y.
-struct LinkPlace {
+struct LinkXY {
   static constexpr int y_shift = 16;
   static constexpr std::uint32_t x_mask = 0xffff;
   static constexpr int largest = 0xffff;
@@ -35,7 +35,7 @@ struct LinkPlace {
 struct LinkTag {
   static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
   static constexpr std::uint32_t enclosed = 32;        // flag: x_f is one of EnclosedCells
-  static constexpr int covered_shift = 12;             // 1: a body covers x_f - c_i
+  static constexpr int narrow_shift = 12;              // 1: a body covers x_f - c_i
   static constexpr int body_shift = 13;                // the body that covers x_f - c_i
   // As many bodies as a tag can tell apart.
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
@@ -47,14 +47,14 @@ struct LinkTag {
     return (tag >> velocity_shift(axis) & 3) - 1;
   }
 
-  static constexpr bool is_covered(std::uint32_t tag) { return (tag >> covered_shift & 1u) != 0; }
+  static constexpr bool is_narrow(std::uint32_t tag) { return (tag >> narrow_shift & 1u) != 0; }
   static constexpr std::uint32_t upstream_body(std::uint32_t tag) { return tag >> body_shift; }  // of a covered link
 
   // upstream_body: which covers x_f - c_i; -1: none.
   static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, bool is_enclosed = false) {
     std::uint32_t tag = static_cast<std::uint32_t>(direction);
     if (is_enclosed) tag |= enclosed;
-    if (upstream_body >= 0) tag |= 1u << covered_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
+    if (upstream_body >= 0) tag |= 1u << narrow_shift | static_cast<std::uint32_t>(upstream_body) << body_shift;
     for (int a = 0; a < 3; ++a) tag |= static_cast<std::uint32_t>(lbm::D3Q19::c[direction][a] + 1) << velocity_shift(a);
     return tag;
   }
@@ -69,7 +69,7 @@ constexpr Count padded(Count links) {
 }
 
 struct Link {
-  std::uint32_t place = 0, tag = 0;
+  std::uint32_t xy = 0, tag = 0;
 };
 
 // Where a link meets a surface that has no formula.
@@ -80,7 +80,7 @@ struct LinkCrossing {
 
 // Links side by side, one array a word; crossings are empty until a body stores them.
 struct LinkStream {
-  std::vector<std::uint32_t> place, tag;
+  std::vector<std::uint32_t> xy, tag;
   std::vector<LinkCrossing> crossing;
 
   void resize(std::size_t size);
@@ -143,21 +143,21 @@ public:
   struct Chunk {
     std::int32_t body = -1;                            // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;  // capacity: with room for the copies
-    std::uint32_t covered = 0;                         // the first so many have a body at x_f - c_i
+    std::uint32_t narrow = 0;                          // the first so many have a body at x_f - c_i
     LinkSums sums;
   };
   // What the pass over the links needs of a chunk: padded(count) links are there.
-  struct Run {
+  struct LinkRange {
     std::int32_t body;
-    std::uint32_t first, count, covered;
+    std::uint32_t first, count, narrow;
   };
   struct Tile {
     LinkStream links;
     std::vector<Chunk> chunks;
     std::vector<std::uint32_t> free_chunks;
     std::vector<std::uint32_t> order;  // of the chunks in use, by their first cell
-    std::vector<Run> runs;             // the same chunks; see runs_in_order()
-    bool in_order = true, runs_current = true;
+    std::vector<LinkRange> ranges;     // the same chunks; see ranges_in_order()
+    bool in_order = true, ranges_current = true;
     std::size_t live = 0, filled = 0;  // links in use; the same with their copies
     std::size_t end = 0;               // first entry of the stream that no chunk has
   };
@@ -167,7 +167,7 @@ public:
   const std::vector<Tile>& tiles() const { return tiles_; }
 
   // The chunks of a tile in memory order of the cells, so that neighbouring grains share what they load.
-  const std::vector<Run>& runs_in_order(int tile) const;
+  const std::vector<LinkRange>& ranges_in_order(int tile) const;
   std::size_t count() const;                // all links
   const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
@@ -178,7 +178,7 @@ public:
   void remove(int body);
 
 private:
-  struct Location {
+  struct TileChunk {
     int tile;
     std::uint32_t chunk;
   };
@@ -187,9 +187,9 @@ private:
   void put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::span<const LinkCrossing> crossings);
   static void compact(Tile& tile);
 
-  mutable std::vector<Tile> tiles_;            // sorted on demand
-  std::vector<std::vector<Location>> places_;  // of each body
-  std::vector<LinkSums> sums_;                 // of each body
+  mutable std::vector<Tile> tiles_;                // sorted on demand
+  std::vector<std::vector<TileChunk>> chunks_of_;  // of each body
+  std::vector<LinkSums> sums_;                     // of each body
 };
 
 }  // namespace thalweg::bodies

@@ -21,8 +21,8 @@ public:
   // Cells along an axis whose centres are within `half_width` of `middle` (and perhaps one more), in memory on this
   // rank out to `ghosts` layers; offsets are taken from `reference`. All in cells.
   void along(int axis, double middle, double half_width, double reference, int ghosts,
-             std::vector<LocalCell>& places) const {
-    places.clear();
+             std::vector<LocalCell>& found) const {
+    found.clear();
     const int cells = decomposition_.cells()[axis], n = block_.size()[axis];
     const bool periodic = decomposition_.periodic()[axis];
     int first = static_cast<int>(std::floor(middle - half_width - 0.5)),
@@ -44,7 +44,7 @@ public:
           else if (offset < -0.5 * cells)
             offset += cells;
         }
-        places.push_back({local, offset});
+        found.push_back({local, offset});
       }
   }
 

@@ -19,14 +19,14 @@ std::optional<double> on_link(std::optional<double> way) {
 
 }  // namespace
 
-void move(const SolidShape& at_start, const RigidPlace& place, SolidShape& moved) {
+void move(const SolidShape& at_start, const RigidTransform& transform, SolidShape& moved) {
   if (const auto* sphere = std::get_if<SolidSphere>(&at_start)) {
-    std::get<SolidSphere>(moved).centre = place.of(sphere->centre);
+    std::get<SolidSphere>(moved).centre = transform.of(sphere->centre);
     return;
   }
   const std::vector<Vec3>& points = std::get<TriangleMesh>(at_start).points;
   std::transform(points.begin(), points.end(), std::get<TriangleMesh>(moved).points.begin(),
-                 [&](const Vec3& point) { return place.of(point); });
+                 [&](const Vec3& point) { return transform.of(point); });
 }
 
 Extent extent_of(const SolidShape& shape) {

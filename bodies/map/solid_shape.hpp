@@ -20,7 +20,7 @@ struct SolidSphere {
 using SolidShape = std::variant<SolidSphere, TriangleMesh>;
 
 // Where a rigid body has come to: its point `pivot` at the start is at `centre`, and it has turned about it.
-struct RigidPlace {
+struct RigidTransform {
   Vec3 pivot = Vec3::Zero(), centre = Vec3::Zero();
   Mat3 turn = Mat3::Identity();
 
@@ -28,7 +28,7 @@ struct RigidPlace {
 };
 
 // Writes a shape, moved to a place, over `moved`, which has been the same shape before.
-void move(const SolidShape& at_start, const RigidPlace& place, SolidShape& moved);
+void move(const SolidShape& at_start, const RigidTransform& transform, SolidShape& moved);
 
 struct Extent {
   Vec3 lower, upper;

@@ -1,4 +1,4 @@
-// The two ways a run can fail. Besides these, std::logic_error reports misuse by the program itself, and KeyError
+// The two ways a run can fail. Besides these, ContractError (check.hpp) reports a fault of the program, and KeyError
 // (core/keys/key_error.hpp) becomes an InputError before it reaches the user.
 //
 // A message is one or more whole sentences: what is wrong, where, and what would be right.

@@ -118,7 +118,7 @@ struct PlaneMomentum {
 
 // The momentum budget of a fluid among grains in one step, over the whole domain: fluxes, sources and sinks. The same
 // bits on every rank, and on any number of ranks.
-struct MomentumBook {
+struct MomentumBudget {
   std::vector<PlaneMomentum> planes;      // of cells, from the floor
   std::vector<Vec3> on_grains;            // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
   std::vector<Vec3> on_sides;             // N, on the faces across x and y, by height as on_grains
@@ -162,10 +162,10 @@ struct Snapshot {
   double time = 0.0;  // s
   std::int64_t step = 0;
   const Decomposition* decomposition = nullptr;
-  GrainView grains;                         // global_count 0: no grains
-  const FluidSource* fluid = nullptr;       // null: no fluid
-  const ContactSource* contacts = nullptr;  // null: no grains
-  const MomentumBook* momentum = nullptr;   // of the last step; null unless requested (System::book_momentum)
+  GrainView grains;                          // global_count 0: no grains
+  const FluidSource* fluid = nullptr;        // null: no fluid
+  const ContactSource* contacts = nullptr;   // null: no grains
+  const MomentumBudget* momentum = nullptr;  // of the last step; null unless requested (System::record_momentum)
 };
 
 }  // namespace thalweg

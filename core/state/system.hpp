@@ -50,7 +50,7 @@ public:
   virtual void advance() = 0;  // one (fluid) step. Throws RunError.
   // The next step records its momentum budget for its snapshot. Collective; does not change the state. A system without
   // fluid and grains has none to record.
-  virtual void book_momentum() {}
+  virtual void record_momentum() {}
   virtual std::int64_t step() const = 0;                                     // steps done since the start of the run
   virtual double time_step() const = 0;                                      // s
   double time() const { return static_cast<double>(step()) * time_step(); }  // s

@@ -54,7 +54,7 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
       {{CoveredMomentum::lost, "lost", "as published: grains get a little less than the fluid loses"},
        {CoveredMomentum::to_grain, "to_grain"}},
       {.meaning = "momentum, relative to the grain, of a cell that a grain covers"});
-  visit.choice("load", coupling.load, choices_of(LoadRule{}),
+  visit.choice("load", coupling.load, choices_of(LoadAveraging{}),
                {.meaning = "the force and torque of the fluid that move a grain in a step; those of light grains are "
                            "always filtered"});
   visit.section(

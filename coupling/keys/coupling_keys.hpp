@@ -3,7 +3,7 @@
 
 #include "bodies/map/body_options.hpp"
 #include "core/keys/section_visitor.hpp"
-#include "coupling/loads/load_rule.hpp"
+#include "coupling/loads/load_averaging.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +28,7 @@ struct CouplingKeys {
   bodies::MomentumExchange momentum_exchange = bodies::MomentumExchange::galilean_invariant;
   bodies::LinkRule links = bodies::LinkRule::bouzidi;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
-  LoadRule load = LoadRule::extrapolated;
+  LoadAveraging load = LoadAveraging::extrapolated;
   std::optional<LubricationKeys> lubrication;
   bool grain_stress = false;  // measure the fluid's stress on every grain
   bool operator==(const CouplingKeys&) const = default;

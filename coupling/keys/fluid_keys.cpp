@@ -33,7 +33,7 @@ lbm::Subgrid FluidKeys::subgrid() const {
 }
 
 void FluidKeys::fill_in_models() {
-  if (lbm::trt_near_bodies(collision)) magic_parameter = magic();
+  if (lbm::traits_of(collision).is_trt_near_bodies) magic_parameter = magic();
   const lbm::Subgrid read = subgrid();
   subgrid_model = read.model();
   if (read.model() == lbm::SubgridModel::smagorinsky) smagorinsky_constant = read.constant();
@@ -85,7 +85,7 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
                   "walls exactly half way, 1/4 with trt_at_bodies, the calmest",
        .above = 0.0,
        .example = 0.1875,
-       .only_if = {lbm::trt_near_bodies(fluid.collision),
+       .only_if = {lbm::traits_of(fluid.collision).is_trt_near_bodies,
                    "only collision trt and trt_at_bodies have a magic parameter; remove it",
                    "collision: trt or trt_at_bodies"}});
   visit.real(

@@ -28,7 +28,7 @@ struct FluidKeys {
   std::optional<double> maximum_lattice_velocity;  // cells per step
   std::optional<double> expected_velocity;         // m/s, the largest
   lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
-  std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else lbm::usual_magic_parameter()
+  std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else CollisionTraits::usual_magic_parameter
   // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
   // else 0.
   std::optional<double> bulk_relaxation_time;
@@ -40,7 +40,7 @@ struct FluidKeys {
   // Writes out what follows from other keys, so that a case that is kept means the same later: the subgrid model and
   // its constant, and the magic parameter.
   void fill_in_models();
-  double magic() const { return magic_parameter.value_or(lbm::usual_magic_parameter(collision)); }
+  double magic() const { return magic_parameter.value_or(lbm::traits_of(collision).usual_magic_parameter); }
 };
 
 void describe(SectionVisitor& visit, FluidKeys& fluid);

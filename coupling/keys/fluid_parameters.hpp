@@ -1,7 +1,7 @@
 // What the lattice fluid of a system is made of: shared by the fluid alone and the fluid with grains.
 #pragma once
 
-#include "bodies/links/link_pass.hpp"
+#include "bodies/links/interpolated_bounce_back.hpp"
 #include "bodies/map/hydrostatic.hpp"
 #include "core/base/ramp.hpp"
 #include "core/base/units.hpp"

@@ -26,8 +26,8 @@ void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units
     diagnostics.push_back({fmt::format("fluid_momentum_{}", "xyz"[axis]), "kg m/s", momentum[axis]});
 }
 
-std::optional<Location> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units,
-                                       const std::string& diagnostic) {
+std::optional<Location> location_in_fluid(const lbm::FluidSurvey& survey, const Units& units,
+                                          const std::string& diagnostic) {
   std::optional<lbm::CellExtreme> found;
   if (diagnostic == "smallest_density_deviation")
     found = survey.lowest;

@@ -26,7 +26,7 @@ void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units
 
 // Where the survey found the extreme value of a diagnostic: largest_lattice_velocity, those of add_extremes(); where
 // cells are broken, the first of them for any name. Empty for other names.
-std::optional<Location> place_in_fluid(const lbm::FluidSurvey& survey, const Units& units,
-                                       const std::string& diagnostic);
+std::optional<Location> location_in_fluid(const lbm::FluidSurvey& survey, const Units& units,
+                                          const std::string& diagnostic);
 
 }  // namespace thalweg::coupling

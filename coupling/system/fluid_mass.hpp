@@ -1,4 +1,4 @@
-// Excess mass of the fluid (mass_account.hpp), from a survey of all of it, and how to change it. Lattice units.
+// Excess mass of the fluid (mass_budget.hpp), from a survey of all of it, and how to change it. Lattice units.
 #pragma once
 
 #include "bodies/map/hydrostatic.hpp"

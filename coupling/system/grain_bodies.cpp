@@ -18,7 +18,7 @@ constexpr double link_tolerance = 1e-3;  // cells a grain may move before the ce
 
 template <typename Real>
 GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies,
-                               const PeriodicBox& box, const Units& units, LoadRule load, bool with_stress)
+                               const PeriodicBox& box, const Units& units, LoadAveraging load, bool with_stress)
     : communicator_(communicator),
       grains_(grains),
       bodies_(bodies),
@@ -116,7 +116,7 @@ void GrainBodies<Real>::update_cells() {
     const Vec3 moved = box_.difference(store.position[g], kept.link_position());
     if (moved.squaredNorm() <= tolerance * tolerance) continue;
     kept.link_position() = store.position[g];
-    bodies_.place(slot_[g], lattice_position(store.position[g]));
+    bodies_.remap(slot_[g], lattice_position(store.position[g]));
   }
 }
 
@@ -125,8 +125,8 @@ void GrainBodies<Real>::collect() {
   const std::size_t count = grains_.store().total();
   const int width = sums_per_grain();
   exchanged_.resize(static_cast<std::size_t>(width) * count);
-  std::vector<std::array<std::int64_t, hidden_sums>> hidden;
-  if (with_stress_) hidden = bodies_.hidden_by_solids();
+  std::vector<std::array<std::int64_t, occluded_sums>> hidden;
+  if (with_stress_) hidden = bodies_.occluded_by_solids();
   for (std::size_t g = 0; g < count; ++g) {
     const bodies::LinkBody& body = bodies_.body(slot_[g]);
     const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
@@ -137,7 +137,7 @@ void GrainBodies<Real>::collect() {
     if (with_stress_) {
       const FixedTensor& moments = bodies_.moments(slot_[g]);
       into = std::copy(moments.sums.begin(), moments.sums.end(), into);
-      std::copy_n(hidden[static_cast<std::size_t>(slot_[g])].begin(), hidden_sums, into);
+      std::copy_n(hidden[static_cast<std::size_t>(slot_[g])].begin(), occluded_sums, into);
     }
   }
   grains_.add_ghost_values(exchanged_, width);
@@ -184,12 +184,12 @@ void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
     // A grain without links has no fluid around it: what was there last stays.
     if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
   }
-  const GrainExchange<double> account = exchange_of(first);
-  bodies::MassDebt debt{account.owed_mass(), account.mean_loss(), account.wanted_return()};
+  const GrainExchange<double> kept = exchange_of(first);
+  bodies::MassDebt debt{kept.owed_mass(), kept.mean_loss(), kept.wanted_return()};
   const bodies::MassReturn next = debt.settle(LatticeFixed::to_double(sum), came_back, links);
-  account.owed_mass() = debt.owed;
-  account.mean_loss() = debt.mean_loss;
-  account.wanted_return() = debt.wanted;
+  kept.owed_mass() = debt.owed;
+  kept.mean_loss() = debt.mean_loss;
+  kept.wanted_return() = debt.wanted;
   for (std::size_t g = first; g < first + count; ++g) {
     exchange_of(g).returned_density() = next.density;
     exchange_of(g).returned_slope() = next.slope;
@@ -219,9 +219,9 @@ double GrainBodies<Real>::mass_owed() const {
 }
 
 // sum F_a x_b of what the fluid presses where solids hide the grain, F = 2 D h, x on the surface against h; lattice
-// units (bodies/map/hidden_patches.hpp).
+// units (bodies/map/occluded_patches.hpp).
 template <typename Real>
-Mat3 GrainBodies<Real>::moment_hidden_by_solids(std::size_t grain) const {
+Mat3 GrainBodies<Real>::moment_occluded_by_solids(std::size_t grain) const {
   const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums + moment_sums];
   const Vec3 h = Vec3(static_cast<double>(sums[0]), static_cast<double>(sums[1]), static_cast<double>(sums[2])) / 36.0;
   if (h.isZero(0.0)) return Mat3::Zero();
@@ -236,7 +236,7 @@ void GrainBodies<Real>::apply_stress(std::size_t grain) {
   const double volume = Sphere{grains_.store().radius[grain]}.volume();
   FixedTensor sums;
   std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
-  const Mat3 stress = (sums.to_mat3() + moment_hidden_by_solids(grain)) * (units_.torque() / volume);
+  const Mat3 stress = (sums.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
   const GrainExchange<double> kept = exchange_of(grain);
   kept.mean_stress() = 0.5 * (stress + kept.last_stress());
   kept.last_stress() = stress;
@@ -256,17 +256,18 @@ void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec
   const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
   const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
   if (dem::holds_translation(store.motion[grain]) || !light_load_.concerns(mass, radius)) {
-    store.load_force[grain] = load_of(load_, force, kept.last_force(), kept.earlier_force());
-    store.load_torque[grain] = load_of(load_, torque, kept.last_torque(), kept.earlier_torque());
+    store.load_force[grain] = averaged_load(load_, force, kept.last_force(), kept.earlier_force());
+    store.load_torque[grain] = averaged_load(load_, torque, kept.last_torque(), kept.earlier_torque());
     return;
   }
   const double share = light_load_.share(mass, radius);
   const Vec3 body = grains_.body_force(grain);
   const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
-  const Vec3 mean = load_of(LoadRule::mean, force, kept.last_force(), kept.earlier_force());
+  const Vec3 mean = averaged_load(LoadAveraging::mean, force, kept.last_force(), kept.earlier_force());
   store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
-  store.load_torque[grain] = LightLoad::filtered(
-      store.load_torque[grain], load_of(LoadRule::mean, torque, kept.last_torque(), kept.earlier_torque()), share);
+  store.load_torque[grain] =
+      LightLoad::filtered(store.load_torque[grain],
+                          averaged_load(LoadAveraging::mean, torque, kept.last_torque(), kept.earlier_torque()), share);
 }
 
 template class GrainBodies<float>;

@@ -7,7 +7,7 @@
 #include "core/base/units.hpp"
 #include "coupling/loads/grain_exchange.hpp"
 #include "coupling/loads/light_load.hpp"
-#include "coupling/loads/load_rule.hpp"
+#include "coupling/loads/load_averaging.hpp"
 #include "dem/grain_dynamics.hpp"
 
 #include <optional>
@@ -22,7 +22,7 @@ class GrainBodies {
 public:
   // Both must outlive it; the grains carry attached_width() attached columns. with_stress: BodyOptions::moments.
   GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies, const PeriodicBox& box,
-              const Units& units, LoadRule load, bool with_stress);
+              const Units& units, LoadAveraging load, bool with_stress);
 
   static int attached_width(bool with_stress) {
     return with_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
@@ -64,16 +64,16 @@ private:
   void settle_mass(std::size_t first, std::size_t count);
   bodies::LinkSums link_sums_of(std::size_t grain) const;
   // Of a grain: force, torque, mass, pressure, LinkSums; where measured, moments and what solids hide.
-  static constexpr int plain_sums = 8 + bodies::LinkSums::size, moment_sums = 9, hidden_sums = 3;
-  int sums_per_grain() const { return plain_sums + (with_stress_ ? moment_sums + hidden_sums : 0); }
-  Mat3 moment_hidden_by_solids(std::size_t grain) const;
+  static constexpr int plain_sums = 8 + bodies::LinkSums::size, moment_sums = 9, occluded_sums = 3;
+  int sums_per_grain() const { return plain_sums + (with_stress_ ? moment_sums + occluded_sums : 0); }
+  Mat3 moment_occluded_by_solids(std::size_t grain) const;
 
   MPI_Comm communicator_;
   dem::GrainDynamics& grains_;
   bodies::Bodies<Real>& bodies_;
   PeriodicBox box_;  // m
   Units units_;
-  LoadRule load_;
+  LoadAveraging load_;
   LightLoad light_load_;
   bool with_stress_;
   std::vector<int> slot_;                // of each grain of the store

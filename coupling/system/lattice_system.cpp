@@ -2,7 +2,7 @@
 
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/same_time_step.hpp"
-#include "coupling/loads/momentum_book.hpp"
+#include "coupling/loads/momentum_budget.hpp"
 #include "coupling/system/fluid_diagnostics.hpp"
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/fluid_sample.hpp"
@@ -51,7 +51,7 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
                           parameters_.bodies.moments);
     grain_bodies_->begin_where_grains_are();
     grain_bodies_->place_at_start();
-    open_account();
+    open_mass_budget();
   }
 }
 
@@ -100,7 +100,7 @@ void LatticeSystem<Real>::advance() {
     move_bodies();
     set_gravity_of(step_ + 1);
     exchange_behind_links();
-    if (booking_) write_momentum_book();
+    if (recording_) record_momentum_budget();
     bodies_.sweep(timer_, phases_.sweep, phases_.links);
     solid_bodies_.settle_masses();
     if (grains_) take_loads();
@@ -141,7 +141,7 @@ void LatticeSystem<Real>::move_bodies() {
   }
   {
     const auto scope = timer_.measure(phases_.map);
-    bodies_.begin_step(booking_);
+    bodies_.begin_step(recording_);
     solid_bodies_.move(time());
     if (grains_) grain_bodies_->move_bodies(slots_changed);
     bodies_.settle();
@@ -170,19 +170,19 @@ void LatticeSystem<Real>::exchange_behind_links() {
 }
 
 template <typename Real>
-void LatticeSystem<Real>::write_momentum_book() {
-  momentum_ = book_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
+void LatticeSystem<Real>::record_momentum_budget() {
+  momentum_ = momentum_budget_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
   momentum_->driving_of_grains = held_force_on_grains();
-  booking_ = false;
+  recording_ = false;
 }
 
 template <typename Real>
 void LatticeSystem<Real>::take_loads() {
   const auto scope = timer_.measure(phases_.loads);
   const bodies::ExchangeTotals& totals = bodies_.step_totals();
-  mass_.book(MassAccount::links, totals.link_mass);
-  mass_.book(MassAccount::uncovered, totals.refilled_mass);
-  mass_.book(MassAccount::covered, totals.covered_mass);
+  mass_.record(MassBudget::links, totals.link_mass);
+  mass_.record(MassBudget::uncovered, totals.refilled_mass);
+  mass_.record(MassBudget::covered, totals.covered_mass);
   grain_bodies_->take_loads();
 }
 
@@ -197,7 +197,7 @@ void LatticeSystem<Real>::advance_grains() {
 // At the start of a run, from whatever state: the mass that is there, and what the grains bring along as owed, is to be
 // kept.
 template <typename Real>
-void LatticeSystem<Real>::open_account() {
+void LatticeSystem<Real>::open_mass_budget() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
   if (!grains_) {
     start_excess_ = excess.sum;
@@ -220,7 +220,7 @@ void LatticeSystem<Real>::keep_mass() {
   if (!is_closed) return;
   const double kept = (grains_ ? mass_.kept() : start_excess_) - mass_owed();
   const double added = restore_excess(fluid_, excess, kept);
-  if (grains_ && rank_of(communicator_) == 0) mass_.book(MassAccount::corrections, added);
+  if (grains_ && rank_of(communicator_) == 0) mass_.record(MassBudget::corrections, added);
 }
 
 template <typename Real>
@@ -298,9 +298,9 @@ template <typename Real>
 void LatticeSystem<Real>::add_grain_diagnostics(const lbm::FluidSurvey& survey,
                                                 std::vector<Diagnostic>& diagnostics) const {
   diagnostics.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
-  const std::vector<Diagnostic> account =
+  const std::vector<Diagnostic> budget =
       mass_.diagnostics(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
-  diagnostics.insert(diagnostics.end(), account.begin(), account.end());
+  diagnostics.insert(diagnostics.end(), budget.begin(), budget.end());
   add_momentum(survey, fluid_.parameters().force, parameters_.units, diagnostics);
 }
 
@@ -334,7 +334,7 @@ template <typename Real>
 std::optional<Location> LatticeSystem<Real>::location_of(const std::string& diagnostic) const {
   if (grains_ && diagnostic == "largest_overlap") return grains_->place_of_deepest_overlap();
   if (grains_ && diagnostic == "largest_grain_speed") return grains_->place_of_fastest();
-  return place_in_fluid(survey_of(fluid_), parameters_.units, diagnostic);
+  return location_in_fluid(survey_of(fluid_), parameters_.units, diagnostic);
 }
 
 template <typename Real>
@@ -404,7 +404,7 @@ void LatticeSystem<Real>::load(ArchiveReader& archive) {
 template <typename Real>
 void LatticeSystem<Real>::import_fluid(ArchiveReader& archive, double spacing) {
   const double density_unit = coupling::import_fluid(fluid_, archive, spacing, parameters_);
-  open_account();
+  open_mass_budget();
   // As the run that is taken over would go on.
   if (grains_ && archive.has("mass/reference"))
     bodies_.set_reference_density(density_unit * archive.real_attribute("mass/reference"));
@@ -420,7 +420,7 @@ void LatticeSystem<Real>::import_grains(ArchiveReader& archive, double spacing) 
   if (spacing != parameters_.units.spacing || archive.real_attribute("system/time_step") != time_step())
     grain_bodies_->forget_lattice_units();
   grain_bodies_->place_at_start();
-  open_account();
+  open_mass_budget();
 }
 
 template class LatticeSystem<float>;

@@ -6,7 +6,7 @@
 #include "core/parallel/decomposition.hpp"
 #include "core/state/system.hpp"
 #include "coupling/keys/fluid_parameters.hpp"
-#include "coupling/loads/mass_account.hpp"
+#include "coupling/loads/mass_budget.hpp"
 #include "coupling/system/grain_bodies.hpp"
 #include "coupling/system/solid_bodies.hpp"
 #include "dem/grain_dynamics.hpp"
@@ -19,7 +19,7 @@
 namespace thalweg::coupling {
 
 struct LatticeParameters : FluidParameters {
-  LoadRule load = LoadRule::extrapolated;            // of grains
+  LoadAveraging load = LoadAveraging::extrapolated;  // of grains
   int sub_steps = 50;                                // DEM steps per lattice step
   bool wall_forces = false;                          // whether the diagnostics include the forces on walls
   std::vector<dem::PrescribedMotion> solid_motions;  // SI, of the first solids; the others stand still
@@ -44,16 +44,15 @@ public:
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
 
   void advance() override;
-  void book_momentum() override { booking_ = grains_ != nullptr; }
+  void record_momentum() override { recording_ = grains_ != nullptr; }
   std::int64_t step() const override { return step_; }
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_density_deviation (1), fluid_cells (1), those of
-  // add_extremes() (fluid_diagnostics.hpp); those of SolidBodies, of the last step: what the fluid exerts on the surface of
-  // each solid, without the reference pressure.
-  // With grains largest_overlap (diameters), largest_grain_speed (m/s), those of MassAccount and of add_momentum(), if
-  // asked for wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and
-  // body_force_x (N/m^3). Collective.
+  // add_extremes() (fluid_diagnostics.hpp); those of SolidBodies, of the last step: what the fluid exerts on the
+  // surface of each solid, without the reference pressure. With grains largest_overlap (diameters), largest_grain_speed
+  // (m/s), those of MassBudget and of add_momentum(), if asked for wall_force_bottom_x ... and
+  // fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and body_force_x (N/m^3). Collective.
   std::vector<Diagnostic> diagnostics() const override;
   std::optional<Location> location_of(const std::string& diagnostic) const override;
   void save(ArchiveWriter& archive) const override;
@@ -89,12 +88,12 @@ private:
   void place_grains();
   void move_bodies();
   void exchange_behind_links();
-  void write_momentum_book();
+  void record_momentum_budget();
   void take_loads();
   void advance_grains();
   void set_gravity_of(std::int64_t step);
   Vec3 held_force_on_grains() const;
-  void open_account();
+  void open_mass_budget();
   void keep_mass();
   void show_grains(Snapshot& s) const;
   void add_grain_diagnostics(const lbm::FluidSurvey& survey, std::vector<Diagnostic>& diagnostics) const;
@@ -111,9 +110,9 @@ private:
   SolidBodies<Real> solid_bodies_;
   std::unique_ptr<dem::GrainDynamics> grains_;     // null: none
   std::optional<GrainBodies<Real>> grain_bodies_;  // with grains
-  bool booking_ = false;                           // the next step's momentum is to be booked
-  std::optional<MomentumBook> momentum_;           // of the last step
-  MassAccount mass_;                               // with grains
+  bool recording_ = false;                         // the next step's momentum is to be recorded
+  std::optional<MomentumBudget> momentum_;         // of the last step
+  MassBudget mass_;                                // with grains
   double start_excess_ = 0.0;                      // without: the excess mass at the start; lattice units
   std::int64_t step_ = 0;
   PhaseTimer timer_;

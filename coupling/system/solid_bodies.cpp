@@ -41,7 +41,7 @@ template <typename Real>
 void SolidBodies<Real>::move(double time) {
   for (const Moving& m : moving_) {
     bodies::SolidMotion motion;
-    motion.place = {m.pivot, m.pivot + m.motion.displacement(time) / units_.spacing, m.motion.turn(time)};
+    motion.transform = {m.pivot, m.pivot + m.motion.displacement(time) / units_.spacing, m.motion.turn(time)};
     motion.velocity = m.motion.velocity_of(m.motion.centre, time) / units_.velocity();
     motion.angular_velocity = m.motion.spin() * units_.time_step;
     motion.returned = m.returned;

@@ -57,8 +57,8 @@ void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourLi
 
 // The load by the law on the first body of a contact, whose history it brings up to date; friction: of a wall.
 template <typename ContactLaw>
-ContactLoad load_of(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
-                    std::optional<double> friction, const double* row, typename ContactLaw::History& history) {
+ContactLoad averaged_load(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
+                          std::optional<double> friction, const double* row, typename ContactLaw::History& history) {
   auto coefficients = coefficients_of<typename ContactLaw::Coefficients>(entry);
   if (friction) coefficients.friction = *friction;
   typename ContactLaw::Constants constants;
@@ -92,7 +92,8 @@ template <typename ContactLaw>
       continue;
     }
     typename ContactLaw::History history;
-    const ContactLoad f = load_of(law, motion, materials.wall(material[c.grain]), wall.friction, rows[number], history);
+    const ContactLoad f =
+        averaged_load(law, motion, materials.wall(material[c.grain]), wall.friction, rows[number], history);
     std::copy(history.begin(), history.end(), rows[number]);
     add_wall_load<ContactLaw::rolls>(f, view, grain);
   }
@@ -125,8 +126,8 @@ void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourL
       if (!touch.goes_on) list.solid_rows.forget(number);
       const ContactMotion motion = motion_of(body_of(grain), touch);
       typename ContactLaw::History history;
-      const ContactLoad f = load_of(law, motion, materials.wall(material[slot]), friction_of(touch, list, around),
-                                    list.solid_rows[number], history);
+      const ContactLoad f = averaged_load(law, motion, materials.wall(material[slot]), friction_of(touch, list, around),
+                                          list.solid_rows[number], history);
       std::copy(history.begin(), history.end(), list.solid_rows[number]);
       add_wall_load<ContactLaw::rolls>(f, touch.view, grain);
     }
@@ -140,7 +141,7 @@ std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion,
                              std::optional<double> friction, const double* row) {
   if (!(motion.overlap > -law.range())) return std::nullopt;
   typename ContactLaw::History history;
-  const ContactLoad f = load_of(law, motion, entry, friction, row, history);
+  const ContactLoad f = averaged_load(law, motion, entry, friction, row, history);
   const Vec3 force = f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
   if (!(motion.overlap > 0.0) && force.isZero(0.0)) return std::nullopt;
   return force;

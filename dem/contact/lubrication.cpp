@@ -26,8 +26,8 @@ struct LubricationLoad {
 
 // normal: unit, from the second to the first; sliding: of the first surface against the second; both spins against each
 // other.
-LubricationLoad load_of(const LubricationResistance& resistance, const Vec3& normal, const Vec3& approach,
-                        const Vec3& surface_velocity, const Vec3& spin) {
+LubricationLoad averaged_load(const LubricationResistance& resistance, const Vec3& normal, const Vec3& approach,
+                              const Vec3& surface_velocity, const Vec3& spin) {
   const Vec3 sliding = surface_velocity - surface_velocity.dot(normal) * normal;
   const Vec3 rolling = spin - spin.dot(normal) * normal;
   return {-resistance.normal * approach.dot(normal) * normal - resistance.sliding * sliding +
@@ -64,8 +64,8 @@ std::optional<NearSurfaces> between(const MovingSphere& first, const MovingSpher
   const double first_arm = first.radius + 0.5 * gap, second_arm = second.radius + 0.5 * gap;
   const Vec3 approach = first.velocity - second.velocity, spin = first_arm * first.spin + second_arm * second.spin;
   return NearSurfaces{normal, first_arm, second_arm,
-                      load_of(lubrication_resistance(parameters, first.radius, first.radius / second.radius, gap),
-                              normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
+                      averaged_load(lubrication_resistance(parameters, first.radius, first.radius / second.radius, gap),
+                                    normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
 }
 
 // ratio: the radius of the sphere over that of what it is near; 0 of a plane.
@@ -76,8 +76,8 @@ std::optional<NearSurfaces> between(const MovingSphere& sphere, const WallView& 
   if (!(gap > 0.0 && gap < parameters.reach())) return std::nullopt;
   const Vec3 approach = sphere.velocity - wall_velocity;
   return NearSurfaces{n, height, 0.0,
-                      load_of(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
-                              approach - height * sphere.spin.cross(n), sphere.spin)};
+                      averaged_load(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
+                                    approach - height * sphere.spin.cross(n), sphere.spin)};
 }
 
 void add_to_pair(PackedGrain& first, PackedGrain& second, const Vec3& separation,

@@ -96,7 +96,7 @@ double relaxation_time(const Case& c) { return units_of(c).relaxation_time(c.flu
 // more makes a fast stream unstable (docs/stability.md). Without it a turbulent stream alone rings at 0.14 cells a step
 // with the model qr (benchmarks/validation/side_wall_channel).
 double bulk_relaxation_time_for(const Case& c) {
-  return lbm::bgk_in_the_open(c.fluid.collision) && c.fluid.subgrid().on() ? 1.0 : 0.0;
+  return lbm::traits_of(c.fluid.collision).is_bgk_in_bulk && c.fluid.subgrid().on() ? 1.0 : 0.0;
 }
 
 double bulk_viscosity(const Case& c) {

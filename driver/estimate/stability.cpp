@@ -3,15 +3,9 @@
 namespace thalweg::driver {
 
 double stable_lattice_velocity(lbm::CollisionModel collision, double excess) {
-  struct Row {
-    double excess, bgk, trt;
-  };
-  constexpr Row map[] = {{5e-2, 0.15, 0.15}, {3e-2, 0.15, 0.15}, {2e-2, 0.15, 0.15},
-                         {1e-2, 0.15, 0.10}, {3e-3, 0.05, 0.02}, {1e-3, 0.02, 0.0}};
-  for (const Row& row : map) {
-    if (excess < row.excess) continue;
-    return lbm::bgk_in_the_open(collision) ? row.bgk : row.trt;
-  }
+  const lbm::CollisionTraits traits = lbm::traits_of(collision);
+  for (std::size_t k = 0; k < traits.stable_velocity.size(); ++k)
+    if (excess >= lbm::stability_excesses[k]) return traits.stable_velocity[k];
   return 0.0;
 }
 

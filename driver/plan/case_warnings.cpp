@@ -122,7 +122,7 @@ Warnings bulk_relaxation(const Case& c) {
          {{{bulk_change(0.0)}, {}}, {{collision_change("bgk", lbm::CollisionModel::bgk)}, {}}}}};
   // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
   const double calm = 0.17 / std::sqrt(bulk), fastest = expected_lattice_velocity(c);
-  if (!lbm::bgk_in_the_open(c.fluid.collision) || bulk <= 1.0 || excess >= 0.003 || fastest <= calm) return {};
+  if (!lbm::traits_of(c.fluid.collision).is_bgk_in_bulk || bulk <= 1.0 || excess >= 0.003 || fastest <= calm) return {};
   return {{fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step grows "
                        "stripes, and this one may reach {:.2g}",
                        bulk, calm, fastest),
@@ -265,7 +265,8 @@ Warnings floating_grains(const Case& c) {
 // (benchmarks/validation/simple_cubic_arrays).
 Warnings inexact_links(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk, trt = lbm::trt_near_bodies(c.fluid.collision),
+  const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk,
+             trt = lbm::traits_of(c.fluid.collision).is_trt_near_bodies,
              bouzidi = c.coupling.links == bodies::LinkRule::bouzidi;
   if (c.grains.empty() || smagorinsky(c) || excess < 0.0299) return {};
   if (!bgk && !(trt && bouzidi && excess > 0.15)) return {};

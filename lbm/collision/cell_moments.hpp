@@ -38,9 +38,9 @@ struct CellMoments {
 // The numbers a collision needs in every cell, ready in packs.
 template <typename Number>
 struct CollisionConstants {
-  Number tau0, tau0_squared, eddies;  // eddies: Subgrid::closure_factor()
-  Number omega0, magic;               // 1/tau_0;  2 magic parameter - 1/2
-  Number omega_bulk;                  // 1/tau_b, where it is of its own
+  Number tau0, tau0_squared, subgrid_factor;  // subgrid_factor: Subgrid::closure_factor()
+  Number omega0, odd_rate_offset;             // 1/tau_0;  2 magic parameter - 1/2
+  Number omega_bulk;                          // 1/tau_b, where it is of its own
   Number force[3], half_force[3];
   Symmetric<Number> quarter;  // F_a F_b/4
   Number cross[3], odd[3];    // 9 w F and 3 w F with the diagonal weight w
@@ -51,9 +51,9 @@ struct CollisionConstants {
     const Vec3& f = p.force;
     tau0 = constant(p.relaxation_time);
     tau0_squared = constant(p.relaxation_time * p.relaxation_time);
-    eddies = constant(p.subgrid.closure_factor());
+    subgrid_factor = constant(p.subgrid.closure_factor());
     omega0 = constant(1.0 / p.relaxation_time);
-    magic = constant(2.0 * p.magic_parameter - 0.5);
+    odd_rate_offset = constant(2.0 * p.magic_parameter - 0.5);
     omega_bulk = constant(p.with_bulk() ? 1.0 / p.bulk_relaxation_time : 0.0);
     for (int a = 0; a < 3; ++a) {
       force[a] = constant(f[a]);
@@ -100,9 +100,10 @@ template <SubgridModel subgrid, bool with_bulk = false, typename Number>
   if constexpr (subgrid == SubgridModel::none) {
     m.omega = constants.omega0;
   } else {
-    const Number eddies = constants.eddies * m.inverse_rho;
+    const Number subgrid_factor = constants.subgrid_factor * m.inverse_rho;
     m.omega =
-        constant(2) / (constants.tau0 + sqrt(constants.tau0_squared + eddies * eddies_of<subgrid, with_bulk>(m.pi)));
+        constant(2) /
+        (constants.tau0 + sqrt(constants.tau0_squared + subgrid_factor * subgrid_invariant<subgrid, with_bulk>(m.pi)));
   }
   if constexpr (with_bulk) m.bulk = constant(1.0 / 24.0) * ((m.omega - constants.omega_bulk) * m.pi.trace());
   return m;

@@ -12,7 +12,7 @@ namespace thalweg::lbm {
 template <typename Number>
 [[gnu::always_inline]] inline Number odd_rate_of(const Number& omega, const CollisionConstants<Number>& constants) {
   constexpr auto constant = pack_constant<Number>;
-  return (constant(2) - omega) / (constant(1) + constants.magic * omega);
+  return (constant(2) - omega) / (constant(1) + constants.odd_rate_offset * omega);
 }
 
 // The even part with the cell's omega, the odd part with a rate of its own.

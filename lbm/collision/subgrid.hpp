@@ -48,7 +48,7 @@ public:
     return model_ == SubgridModel::smagorinsky ? constant_ * constant_ * rate : 0.0;
   }
 
-  // The factor of E that comes before what eddies_of() takes from Pi.
+  // The factor of E that comes before what subgrid_invariant() takes from Pi.
   double closure_factor() const {
     switch (model_) {
       case SubgridModel::none:
@@ -73,7 +73,7 @@ private:
 // E over the closure_factor(). `own_bulk`: the trace of Pi has a relaxation time of its own, and is then no sign of
 // shear.
 template <SubgridModel model, bool own_bulk, typename Number>
-[[gnu::always_inline]] inline Number eddies_of(const Symmetric<Number>& pi) {
+[[gnu::always_inline]] inline Number subgrid_invariant(const Symmetric<Number>& pi) {
   using std::max;
   using std::sqrt;
   if constexpr (model == SubgridModel::smagorinsky) {

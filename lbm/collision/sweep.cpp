@@ -50,15 +50,15 @@ struct RowSegment {
 };
 
 template <typename Real>
-[[gnu::always_inline]] inline void load(Pack<Real> (&f)[D3Q19::directions], const Streams<Real>& streams,
-                                        std::ptrdiff_t cell) {
+[[gnu::always_inline]] inline void load_pack(Pack<Real> (&f)[D3Q19::directions], const Streams<Real>& streams,
+                                             std::ptrdiff_t cell) {
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
     f[i].copy_from(streams.in[i] + cell, stdx::element_aligned);
   });
 }
 
 template <typename Real>
-[[gnu::always_inline]] inline void prefetch(const Streams<Real>& streams, std::ptrdiff_t cell) {
+[[gnu::always_inline]] inline void prefetch_pack(const Streams<Real>& streams, std::ptrdiff_t cell) {
   for_each_direction([&]<int i>() __attribute__((always_inline)) {
     __builtin_prefetch(streams.in[i] + cell + prefetch_bytes / static_cast<std::ptrdiff_t>(sizeof(Real)), 1);
   });
@@ -85,7 +85,7 @@ template <Kind kind, typename Real>
                                                 const CollisionConstants<Pack<Real>>& constants,
                                                 RowSegment<Real>& segment, int p) {
   Pack<Real> f[D3Q19::directions];
-  load(f, streams, cell);
+  load_pack(f, streams, cell);
   const CellMoments<Pack<Real>> m = moments_of<kind.subgrid, kind.bulk>(f, constants);
   segment.deviation[p] = m.deviation;
   segment.mx[p] = m.mx;
@@ -128,7 +128,7 @@ template <Kind kind, typename Real>
   m.inverse_rho = s.inverse_rho[p];
   m.omega = s.omega[p];
   if constexpr (kind.bulk) m.bulk = s.bulk[p];
-  load(f, streams, cell);
+  load_pack(f, streams, cell);
   if constexpr (kind.model == CollisionModel::trt_at_bodies)
     relax_trt_at_bodies<kind.bulk>(f, m, constants, calmness_in_lanes<Real>(f, m, constants, beside_bodies, in_gaps));
   else
@@ -174,7 +174,7 @@ void sweep_packs(const Streams<Real>& streams, const RowCells& row, const Collis
     for (int p = 0; p < count; ++p) {
       if (row.fluid[first + p] == 0) continue;
       const std::ptrdiff_t cell = row.first + (first + p) * width;
-      prefetch(streams, cell);
+      prefetch_pack(streams, cell);
       relax_pack<kind>(streams, cell, constants, segment, p, row.beside_bodies[first + p], row.in_gaps[first + p]);
       if constexpr (kind.shear) store_shear(segment, p, *output.shear, (first + p) * width);
       if (output.moments) store_moments(segment, p, *output.moments, (first + p) * width);

@@ -32,8 +32,8 @@ const CollisionParameters& checked(const CollisionParameters& parameters) {
 }
 
 // Of this block's cells.
-WallPlaces wall_places(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
-  WallPlaces walls;
+WallPositions wall_places(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
+  WallPositions walls;
   for (int axis = 0; axis < 3; ++axis) {
     const auto is_wall = [&](bool high) {
       const FaceType type = faces[static_cast<std::size_t>(face_of(axis, high))].type;
@@ -243,7 +243,7 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
   for (int i = 0; i < D3Q19::directions; ++i) {
     std::fill(values.begin(), values.end(), Real(0));
     for_each_fluid_cell(cells_, [&](std::ptrdiff_t cell, const Index3& at) {
-      values[place_in_block(indexing(), at)] = populations_.post_collision(i, cell);
+      values[index_in_block(indexing(), at)] = populations_.post_collision(i, cell);
     });
     archive.write(fmt::format("fluid/populations_{:02d}", i), std::span<const Real>(values), array_box());
   }
@@ -266,7 +266,7 @@ void Fluid<Real>::load_populations(ArchiveReader& archive) {
   for (int i = 0; i < D3Q19::directions; ++i) {
     archive.read(fmt::format("fluid/populations_{:02d}", i), std::span<Real>(values), array_box());
     for_each_cell(indexing(), [&](std::ptrdiff_t cell, const Index3& at) {
-      populations_.post_collision(i, cell) = values[place_in_block(indexing(), at)];
+      populations_.post_collision(i, cell) = values[index_in_block(indexing(), at)];
     });
   }
 }

@@ -47,9 +47,9 @@ Halo<Real>::Halo(const Decomposition& decomposition, MPI_Comm communicator, Popu
     if (from >= 0) add_neighbour(from, towards, false);
   }
   std::vector<PackedExchange::Neighbour> neighbours;
-  const auto total = [](const std::vector<Run>& runs) {
+  const auto total = [](const std::vector<StridedRange>& ranges) {
     std::size_t count = 0;
-    for (const Run& run : runs) count += run.count;
+    for (const StridedRange& range : ranges) count += range.count;
     return count * sizeof(Real);
   };
   std::stable_partition(messages_.begin(), messages_.end(), [me](const Message& m) { return m.rank == me; });
@@ -71,7 +71,7 @@ typename Halo<Real>::Message& Halo<Real>::message_to(int rank) {
 template <typename Real>
 void Halo<Real>::add_neighbour(int rank, const Index3& towards, bool sending) {
   Message& message = message_to(rank);
-  std::vector<Run>& runs = sending ? message.send : message.receive;
+  std::vector<StridedRange>& ranges = sending ? message.send : message.receive;
   const Index3& n = populations_.indexing().size();
   for (int i = 1; i < D3Q19::directions; ++i) {
     if (!crosses(i, towards)) continue;
@@ -88,27 +88,28 @@ void Halo<Real>::add_neighbour(int rank, const Index3& towards, bool sending) {
         end[a] = c > 0 && !walls_.present(a, true) ? n[a] - 1 : n[a];
       }
     }
-    add_population(runs, i, begin, end);
+    add_population(ranges, i, begin, end);
   }
-  add_wall_lines(runs, towards, sending);
+  add_wall_lines(ranges, towards, sending);
 }
 
 template <typename Real>
-void Halo<Real>::add_population(std::vector<Run>& runs, int direction, const Index3& begin, const Index3& end) {
+void Halo<Real>::add_population(std::vector<StridedRange>& ranges, int direction, const Index3& begin,
+                                const Index3& end) {
   const CellIndexing& indexing = populations_.indexing();
   const bool along_x = end[0] - begin[0] > 1;
   for (int z = begin[2]; z < end[2]; ++z)
     for (int y = begin[1]; y < (along_x ? end[1] : begin[1] + 1); ++y) {
       const std::ptrdiff_t cell = indexing.index(begin[0], y, z);
-      runs.push_back({{populations_.plane(D3Q19::opposite(direction)) + cell,
-                       populations_.plane(direction) + cell + indexing.offset(direction)},
-                      along_x ? end[0] - begin[0] : end[1] - begin[1],
-                      along_x ? 1 : indexing.row_stride()});
+      ranges.push_back({{populations_.plane(D3Q19::opposite(direction)) + cell,
+                         populations_.plane(direction) + cell + indexing.offset(direction)},
+                        along_x ? end[0] - begin[0] : end[1] - begin[1],
+                        along_x ? 1 : indexing.row_stride()});
     }
 }
 
 template <typename Real>
-void Halo<Real>::add_wall_lines(std::vector<Run>& runs, const Index3& towards, bool sending) {
+void Halo<Real>::add_wall_lines(std::vector<StridedRange>& ranges, const Index3& towards, bool sending) {
   int axis = -1;
   for (int a = 0; a < 3; ++a)
     if (towards[a] != 0) axis = axis < 0 ? a : 3;
@@ -121,7 +122,7 @@ void Halo<Real>::add_wall_lines(std::vector<Run>& runs, const Index3& towards, b
     const int n = axis_is_u ? field.nu : field.nv, length = axis_is_u ? field.nv : field.nu;
     const int line = sending ? (towards[axis] > 0 ? n - 1 : 0) : (towards[axis] > 0 ? -1 : n);
     Real* first = axis_is_u ? &field.at(line, 0) : &field.at(0, line);
-    runs.push_back({{first, first}, length, axis_is_u ? field.nu + 2 : 1});
+    ranges.push_back({{first, first}, length, axis_is_u ? field.nu + 2 : 1});
   }
 }
 
@@ -132,14 +133,14 @@ void Halo<Real>::start() {
   for (const Message& message : messages_) {
     if (&message - messages_.data() == self_) continue;
     Real* buffer = exchange_.template send_buffer<Real>(n++);
-    for (const Run& run : message.send)
-      for (int k = 0; k < run.count; ++k) *buffer++ = run.at[now][k * run.stride];
+    for (const StridedRange& range : message.send)
+      for (int k = 0; k < range.count; ++k) *buffer++ = range.at[now][k * range.stride];
   }
   exchange_.start();
   if (self_ >= 0) {
     const Message& own = messages_[self_];
     for (std::size_t r = 0; r < own.send.size(); ++r) {
-      const Run &from = own.send[r], &to = own.receive[r];
+      const StridedRange &from = own.send[r], &to = own.receive[r];
       for (int k = 0; k < from.count; ++k) to.at[now][k * to.stride] = from.at[now][k * from.stride];
     }
   }
@@ -153,8 +154,8 @@ void Halo<Real>::finish() {
   for (const Message& message : messages_) {
     if (&message - messages_.data() == self_) continue;
     const Real* buffer = exchange_.template receive_buffer<Real>(n++);
-    for (const Run& run : message.receive)
-      for (int k = 0; k < run.count; ++k) run.at[now][k * run.stride] = *buffer++;
+    for (const StridedRange& range : message.receive)
+      for (int k = 0; k < range.count; ++k) range.at[now][k * range.stride] = *buffer++;
   }
 }
 

@@ -25,20 +25,20 @@ public:
 
 private:
   // count Reals, stride apart; where they are in the swapped and in the moved arrangement.
-  struct Run {
+  struct StridedRange {
     Real* at[2];
     int count;
     std::ptrdiff_t stride;
   };
   struct Message {
     int rank;
-    std::vector<Run> send, receive;
+    std::vector<StridedRange> send, receive;
   };
 
   Message& message_to(int rank);
   void add_neighbour(int rank, const Index3& towards, bool sending);
-  void add_population(std::vector<Run>& runs, int direction, const Index3& begin, const Index3& end);
-  void add_wall_lines(std::vector<Run>& runs, const Index3& towards, bool sending);
+  void add_population(std::vector<StridedRange>& ranges, int direction, const Index3& begin, const Index3& end);
+  void add_wall_lines(std::vector<StridedRange>& ranges, const Index3& towards, bool sending);
 
   const Decomposition& decomposition_;
   Populations<Real>& populations_;

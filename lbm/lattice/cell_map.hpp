@@ -11,7 +11,7 @@
 namespace thalweg::lbm {
 
 // Where walls are, in local coordinates: cells below `lower` and from `upper` on are behind one. No walls by default.
-struct WallPlaces {
+struct WallPositions {
   Index3 lower{none_below, none_below, none_below}, upper{none_above, none_above, none_above};
   static constexpr int none_below = std::numeric_limits<int>::min() / 2;
   static constexpr int none_above = std::numeric_limits<int>::max() / 2;
@@ -24,7 +24,7 @@ public:
   // Entries of bodies() that can be read beyond the last cell, by vectors that begin at a cell.
   static constexpr std::size_t read_beyond = 16;
 
-  explicit CellMap(const CellIndexing& indexing, const WallPlaces& walls = {})
+  explicit CellMap(const CellIndexing& indexing, const WallPositions& walls = {})
       : indexing_(indexing),
         walls_(walls),
         body_(indexing.count() + read_beyond, fluid),
@@ -108,7 +108,7 @@ private:
   }
 
   CellIndexing indexing_;
-  WallPlaces walls_;
+  WallPositions walls_;
   std::vector<std::int32_t> body_;
   std::vector<std::uint8_t> fluid_in_pack_;
   std::vector<std::uint16_t> beside_bodies_, in_gaps_;

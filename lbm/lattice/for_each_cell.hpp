@@ -39,7 +39,7 @@ inline Block local_block(const Block& owned, const Block& region) {
 }
 
 // Index of an owned cell in arrays without ghosts and padding.
-inline std::size_t place_in_block(const CellIndexing& indexing, const Index3& at) {
+inline std::size_t index_in_block(const CellIndexing& indexing, const Index3& at) {
   const Index3& n = indexing.size();
   return (static_cast<std::size_t>(at[2]) * n[1] + at[1]) * n[0] + at[0];
 }

@@ -1,10 +1,11 @@
-// What stands at each of the six faces of the domain. Lattice units. The rules themselves: walls.hpp.
+// Boundary conditions on the six faces of the domain. Lattice units; the rules are in walls.hpp.
 #pragma once
 
 #include "core/base/types.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
 #include <array>
+#include <optional>
 
 namespace thalweg::lbm {
 
@@ -20,15 +21,24 @@ enum class FaceType {
   pressure_outlet        // fluid leaves (or enters) at a given density
 };
 
-// Everything that is asked of a type of face, in one place.
+// How a face gives back the populations that come to it.
+enum class Reflection {
+  bounce_back,          // reversed
+  specular,             // mirrored
+  specular_less_shear,  // mirrored, less the stress of the law of the wall
+  mixed                 // a fraction reversed, the rest mirrored: Navier's slip
+};
+
+// Properties of a type of face, all in one place.
 struct FaceTraits {
-  int precedence = 3;         // of two faces at an edge, that with the larger number decides what comes out of it
-  bool is_open = false;       // lets fluid in or out
-  bool reflects = false;      // gives back what comes to it, bounced back or mirrored
-  bool has_velocity = false;  // FaceCondition::velocity
-  bool slips = false;         // Navier's slip
-  bool drags = false;         // exerts shear on a flow along it
-  bool is_smooth = false;     // a boundary layer by the law of the wall stands on it
+  int precedence = 3;                    // at an edge of two faces, the rule of the higher one applies
+  bool is_open = false;                  // lets fluid in or out
+  std::optional<Reflection> reflection;  // none: other populations enter than those that came
+  bool has_velocity = false;             // FaceCondition::velocity
+  bool drags = false;                    // exerts shear on a flow along it
+  bool is_smooth = false;                // carries a boundary layer that follows the law of the wall
+
+  constexpr bool slips() const { return reflection == Reflection::mixed; }
 };
 
 constexpr FaceTraits traits_of(FaceType type) {
@@ -36,17 +46,17 @@ constexpr FaceTraits traits_of(FaceType type) {
     case FaceType::periodic:
       return {};
     case FaceType::no_slip:
-      return {.reflects = true, .drags = true};
+      return {.reflection = Reflection::bounce_back, .drags = true};
     case FaceType::free_slip:
-      return {.precedence = 0, .reflects = true};
+      return {.precedence = 0, .reflection = Reflection::specular};
     case FaceType::moving:
       return {.has_velocity = true, .drags = true};
     case FaceType::navier_slip:
-      return {.reflects = true, .slips = true, .drags = true};
+      return {.reflection = Reflection::mixed, .drags = true};
     case FaceType::law_of_the_wall:
-      return {.reflects = true, .drags = true, .is_smooth = true};
+      return {.reflection = Reflection::specular_less_shear, .drags = true, .is_smooth = true};
     case FaceType::slip_law_of_the_wall:
-      return {.reflects = true, .slips = true, .drags = true, .is_smooth = true};
+      return {.reflection = Reflection::mixed, .drags = true, .is_smooth = true};
     case FaceType::velocity_inlet:
       return {.precedence = 2, .is_open = true, .has_velocity = true};
     case FaceType::pressure_outlet:

@@ -8,9 +8,6 @@ namespace thalweg::lbm {
 
 namespace {
 
-bool has_velocity(FaceType type) { return traits_of(type).has_velocity; }
-bool reflects(FaceType type) { return traits_of(type).reflects; }
-
 double dot(int direction, const Vec3& v) {
   return D3Q19::c[direction][0] * v.x() + D3Q19::c[direction][1] * v.y() + D3Q19::c[direction][2] * v.z();
 }
@@ -33,13 +30,13 @@ void Walls<Real>::apply_face(Populations<Real>& populations, const CellMap& cell
   }
   for (int o = 1; o < D3Q19::directions; ++o)
     if (D3Q19::c[o][axis] == inward) {
-      const Entry entry(indexing_, face, o);
-      for (int v = 0; v < entry.nv; ++v) apply_row(populations, cells, entry, v);
+      const IncomingDirection incoming(indexing_, face, o);
+      for (int v = 0; v < incoming.nv; ++v) apply_row(populations, cells, incoming, v);
     }
 }
 
 template <typename Real>
-Walls<Real>::Entry::Entry(const CellIndexing& indexing, int from_face, int along)
+Walls<Real>::IncomingDirection::IncomingDirection(const CellIndexing& indexing, int from_face, int along)
     : face(from_face), direction(along), axis(from_face / 2) {
   u_axis = first_axis(axis);
   v_axis = second_axis(axis);
@@ -83,54 +80,49 @@ Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::
 
 // The common walls, in loops over plain arrays.
 template <typename Real>
-void Walls<Real>::reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const {
-  const int axis = run.face / 2, o = run.direction;
+void Walls<Real>::reflect_row(Populations<Real>& populations, const CellMap& cells, const RowPart& part,
+                              Reflection reflection) const {
+  const int axis = part.face / 2, o = part.direction;
   const int cu = D3Q19::c[o][first_axis(axis)], cv = D3Q19::c[o][second_axis(axis)];
-  const std::ptrdiff_t stride = run.stride, source = run.first - run.tangential;
-  Real* into = &populations.incoming(o, run.first);
-  const Real* own = &populations.post_collision(D3Q19::opposite(o), run.first);
+  const std::ptrdiff_t stride = part.stride, source = part.first - part.tangential;
+  Real* into = &populations.incoming(o, part.first);
+  const Real* own = &populations.post_collision(D3Q19::opposite(o), part.first);
   const Real* other = &populations.post_collision(D3Q19::mirror(o, axis), source);
   const std::int32_t* body = cells.bodies() + source;
-  switch (faces_[run.face].type) {
-    case FaceType::no_slip:
-      for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+  switch (reflection) {
+    case Reflection::bounce_back:
+      for (int u = part.begin; u < part.end; ++u) into[u * stride] = own[u * stride];
       break;
-    case FaceType::free_slip:
-      for (int u = run.begin; u < run.end; ++u)
+    case Reflection::specular:
+      for (int u = part.begin; u < part.end; ++u)
         into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] : own[u * stride];
       break;
-    case FaceType::law_of_the_wall: {
+    case Reflection::specular_less_shear: {
       if (cu == 0 && cv == 0) {
-        for (int u = run.begin; u < run.end; ++u) into[u * stride] = own[u * stride];
+        for (int u = part.begin; u < part.end; ++u) into[u * stride] = own[u * stride];
         break;
       }
-      const Real* stress = stress_[run.face]->row(cu != 0 ? 0 : 1, run.v);
+      const Real* stress = stress_[part.face]->row(cu != 0 ? 0 : 1, part.v);
       const Real half = Real(0.5) * static_cast<Real>(cu + cv);  // one of the two is 0
-      for (int u = run.begin; u < run.end; ++u)
+      for (int u = part.begin; u < part.end; ++u)
         into[u * stride] = body[u * stride] == CellMap::fluid ? other[u * stride] - half * stress[u] : own[u * stride];
       break;
     }
-    case FaceType::navier_slip:
-    case FaceType::slip_law_of_the_wall: {
-      const Real* r = bounced_[run.face].row(run.v);
-      const Real* r_source = bounced_[run.face].row(run.v - cv) - cu;
-      for (int u = run.begin; u < run.end; ++u) {
+    case Reflection::mixed: {
+      const Real* r = bounced_[part.face].row(part.v);
+      const Real* r_source = bounced_[part.face].row(part.v - cv) - cu;
+      for (int u = part.begin; u < part.end; ++u) {
         const Real mixed = r[u] * own[u * stride] + (Real(1) - r_source[u]) * other[u * stride];
         into[u * stride] = body[u * stride] == CellMap::fluid ? mixed : own[u * stride];
       }
       break;
     }
-    case FaceType::periodic:  // the others reflect nothing
-    case FaceType::moving:
-    case FaceType::velocity_inlet:
-    case FaceType::pressure_outlet:
-      break;
   }
 }
 
 // The other face if this population comes out of an edge, or -1.
 template <typename Real>
-int Walls<Real>::edge_face(const Entry& e, int u, int v) const {
+int Walls<Real>::edge_face(const IncomingDirection& e, int u, int v) const {
   if (e.cu > 0 && u == 0 && present(e.u_axis, false)) return face_of(e.u_axis, false);
   if (e.cu < 0 && u == e.nu - 1 && present(e.u_axis, true)) return face_of(e.u_axis, true);
   if (e.cv > 0 && v == 0 && present(e.v_axis, false)) return face_of(e.v_axis, false);
@@ -140,28 +132,30 @@ int Walls<Real>::edge_face(const Entry& e, int u, int v) const {
 
 // What a cell gets out of the edge with another face.
 template <typename Real>
-Real Walls<Real>::from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell,
-                            int other) const {
-  const FaceCondition& wall = faces_[entry.face];
+Real Walls<Real>::from_edge(const Populations<Real>& populations, const IncomingDirection& incoming,
+                            std::ptrdiff_t cell, int other) const {
+  const FaceCondition& wall = faces_[incoming.face];
   if (wall.type == FaceType::pressure_outlet)
-    return at_pressure(populations, entry.direction, cell, wall.density_deviation);
+    return at_pressure(populations, incoming.direction, cell, wall.density_deviation);
   Vec3 velocity = Vec3::Zero();
-  for (const int face : {std::min(entry.face, other), std::max(entry.face, other)})
-    if (has_velocity(faces_[face].type)) velocity += faces_[face].velocity;
-  return with_velocity(populations, entry.direction, cell, velocity);
+  for (const int face : {std::min(incoming.face, other), std::max(incoming.face, other)})
+    if (traits_of(faces_[face].type).has_velocity) velocity += faces_[face].velocity;
+  return with_velocity(populations, incoming.direction, cell, velocity);
 }
 
 // What a cell away from edges gets from a wall that does not merely reflect.
 template <typename Real>
-Real Walls<Real>::from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const {
-  const FaceCondition& wall = faces_[entry.face];
-  return has_velocity(wall.type) ? with_velocity(populations, entry.direction, cell, wall.velocity)
-                                 : at_pressure(populations, entry.direction, cell, wall.density_deviation);
+Real Walls<Real>::from_wall(const Populations<Real>& populations, const IncomingDirection& incoming,
+                            std::ptrdiff_t cell) const {
+  const FaceCondition& wall = faces_[incoming.face];
+  return traits_of(wall.type).has_velocity ? with_velocity(populations, incoming.direction, cell, wall.velocity)
+                                           : at_pressure(populations, incoming.direction, cell, wall.density_deviation);
 }
 
 // Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
 template <typename Real>
-void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& e, int v) const {
+void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells, const IncomingDirection& e,
+                            int v) const {
   Index3 at{0, 0, 0};
   at[e.axis] = e.face % 2 == 0 ? 0 : indexing_.size()[e.axis] - 1;
   at[e.v_axis] = v;
@@ -179,8 +173,8 @@ void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells
   };
   edges(0, begin);
   edges(end, e.nu);
-  if (reflects(faces_[e.face].type)) {
-    reflect_run(populations, cells, {e.face, e.direction, v, begin, end, first, e.stride, e.tangential});
+  if (const std::optional<Reflection> reflection = traits_of(faces_[e.face].type).reflection) {
+    reflect_row(populations, cells, {e.face, e.direction, v, begin, end, first, e.stride, e.tangential}, *reflection);
     return;
   }
   for (int u = begin; u < end; ++u) {

@@ -17,8 +17,6 @@ namespace {
 constexpr const char* face_names[6] = {"x_low", "x_high", "y_low", "y_high", "z_low", "z_high"};
 constexpr double smallest_bounced_fraction = 1e-6;  // lets a wall without shear (a start from rest) take hold
 
-bool slips(FaceType type) { return traits_of(type).slips; }
-
 void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::moving && wall.velocity[axis] != 0.0)
     throw InputError(
@@ -79,7 +77,7 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
       check(faces[face], axis, face_names[face]);
       const bool at_domain_face = high ? block.upper[axis] == decomposition.cells()[axis] : block.lower[axis] == 0;
       present_[face] = at_domain_face && faces[face].type != FaceType::periodic;
-      if (present_[face] && slips(faces[face].type))
+      if (present_[face] && traits_of(faces[face].type).slips())
         bounced_[face].resize(indexing.size()[first_axis(axis)], indexing.size()[second_axis(axis)],
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
@@ -172,7 +170,7 @@ void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decompositio
     for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && swept_; ++n)
       archive.write(state_name(face, n),
                     stress_[face] ? std::as_const(*stress_[face]).state(n) : std::span<const Real>(), box);
-    if (!slips(faces_[face].type)) continue;
+    if (!traits_of(faces_[face].type).slips()) continue;
     std::vector<Real> values;
     for (int v = 0; v < bounced_[face].nv; ++v)
       for (int u = 0; u < bounced_[face].nu; ++u) values.push_back(bounced_[face].at(u, v));
@@ -189,7 +187,7 @@ void Walls<Real>::load(ArchiveReader& archive, const Decomposition& decompositio
       archive.read(state_name(face, n), stress_[face] ? stress_[face]->state(n) : std::span<Real>(), box);
       swept_ = true;
     }
-    if (!slips(faces_[face].type)) continue;
+    if (!traits_of(faces_[face].type).slips()) continue;
     std::vector<Real> values(box.shape[0] * box.shape[1]);
     archive.read(std::string("fluid/bounced_fraction_") + face_names[face], std::span<Real>(values), box);
     std::size_t next = 0;

@@ -107,28 +107,30 @@ public:
 private:
   // Cells begin to end of a row along a face, for one direction that enters there: where the row's first cell is, and
   // how far its cells, and each from the cell its mirrored population comes from, lie apart in memory.
-  struct Run {
+  struct RowPart {
     int face, direction, v, begin, end;
     std::ptrdiff_t first, stride, tangential;
   };
 
   // One direction that comes out of one face: how far it runs along the two axes of the face, and how many cells these
   // have.
-  struct Entry {
-    Entry(const CellIndexing& indexing, int from_face, int along);
+  struct IncomingDirection {
+    IncomingDirection(const CellIndexing& indexing, int from_face, int along);
     int face, direction;
     int axis, u_axis, v_axis, nu, nv, cu, cv;
     std::ptrdiff_t stride, tangential;  // of u in memory, and of the part of the direction along the face
   };
 
   void apply_face(Populations<Real>& populations, const CellMap& cells, int face);
-  void apply_row(Populations<Real>& populations, const CellMap& cells, const Entry& entry, int v) const;
-  void reflect_run(Populations<Real>& populations, const CellMap& cells, const Run& run) const;
+  void apply_row(Populations<Real>& populations, const CellMap& cells, const IncomingDirection& incoming, int v) const;
+  void reflect_row(Populations<Real>& populations, const CellMap& cells, const RowPart& part,
+                   Reflection reflection) const;
   void update_bounced_cell(int face, int x, int y, int z, double shear_rate, const CellMap& cells);
   bool decides_edge(int face, int other) const;
-  int edge_face(const Entry& entry, int u, int v) const;
-  Real from_edge(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell, int other) const;
-  Real from_wall(const Populations<Real>& populations, const Entry& entry, std::ptrdiff_t cell) const;
+  int edge_face(const IncomingDirection& incoming, int u, int v) const;
+  Real from_edge(const Populations<Real>& populations, const IncomingDirection& incoming, std::ptrdiff_t cell,
+                 int other) const;
+  Real from_wall(const Populations<Real>& populations, const IncomingDirection& incoming, std::ptrdiff_t cell) const;
   int face_of_population(int face, int direction, const Index3& at) const;
   bool has_stress(int face) const { return faces_[face].type == FaceType::law_of_the_wall; }
   bool follows_shear(int face) const;

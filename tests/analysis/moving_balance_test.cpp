@@ -9,7 +9,7 @@
 namespace thalweg::analysis::moving_balance_test {
 namespace {
 
-// Momentum along x above the middle of the lowest plane of cells, after a step that was booked, of fluid (without a
+// Momentum along x above the middle of the lowest plane of cells, after a step that was recorded, of fluid (without a
 // body force) and grains; kg m/s, over all ranks.
 double momentum_above(const LatticeSystem<double>& system, double spacing) {
   const dem::GrainStore& store = system.grains().store();
@@ -21,8 +21,8 @@ double momentum_above(const LatticeSystem<double>& system, double spacing) {
   return fluid * std::pow(spacing, 3) + sum_over_ranks(MPI_COMM_WORLD, grains);
 }
 
-// Momentum along x that the lowest plane of cells sends up and down in a step after one that was booked, per area (Pa):
-// P^c = rho u_x u_z + (1 - omega) Pi_xz, where the viscous stress is -(1 - omega/2) Pi_xz (BGK).
+// Momentum along x that the lowest plane of cells sends up and down in a step after one that was recorded, per area
+// (Pa): P^c = rho u_x u_z + (1 - omega) Pi_xz, where the viscous stress is -(1 - omega/2) Pi_xz (BGK).
 double sent(const LatticeSystem<double>& system, double omega) {
   const PlaneMomentum& plane = system.snapshot().momentum->planes.front();
   constexpr int xz = 4;
@@ -37,7 +37,7 @@ double sent(const LatticeSystem<double>& system, double omega) {
 // and half of what is sent in the next, so that of N steps (P^c_N - P^c_0)/(2 N) is too much. Counted over every step,
 // nothing else is left but
 //   the loads, which act from the middle of a sub-step to the middle of another: half a sub-step's share of them twice;
-//   the momentum and the stress of a cell in the book, rounded to within 2^-41.
+//   the momentum and the stress of a cell in the budget, rounded to within 2^-41.
 void expect_closed(bool keep) {
   WaterBox box;
   box.cells = {24, 18, 30};
@@ -57,7 +57,7 @@ void expect_closed(bool keep) {
     box.seeds.push_back(glass_sphere(k, Vec3((k % 3) * 6.6e-3 + 2e-3, (k / 3) * 7.4e-3 + 3e-3, 1.1e-2 + 4e-4 * k)));
   const auto system = system_of(box);
   for (int step = 0; step < 50; ++step) {
-    system->book_momentum();
+    system->record_momentum();
     system->advance();
   }
   StressBalance balance = balance_of(box, *system, box.spacing, {});
@@ -67,7 +67,7 @@ void expect_closed(bool keep) {
   constexpr int steps = 400;
   double lost = 0.0, exchanged = 0.0, largest_load = 0.0;
   for (int step = 0; step < steps; ++step) {
-    system->book_momentum();
+    system->record_momentum();
     system->advance();
     const Snapshot snapshot = system->snapshot();
     balance.observe(snapshot);

@@ -30,10 +30,10 @@ RefillTotals move_sphere(lbm::Fluid<double>& fluid, const Decomposition& decompo
   BodyMap map(decomposition, fluid.block(), fluid.cells());
   map.begin_update();
   const int slot = map.add(0, 3.0);
-  map.place(slot, before);
+  map.remap(slot, before);
   map.settle();
   map.begin_update();
-  map.place(slot, body.centre);
+  map.remap(slot, body.centre);
   const std::vector<CellChange> changes = map.settle();
   std::vector<LinkBody> bodies{body};
   return Refill(decomposition, communicator).fill(fluid, changes, rest, bodies);

@@ -34,7 +34,7 @@ struct WaterBox {
   bool keep_covered_momentum = false;
   bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
-  LoadRule load = LoadRule::extrapolated;
+  LoadAveraging load = LoadAveraging::extrapolated;
   std::optional<lbm::FlowTarget> flow_target;
   bool target_moves_grains = true;
   std::vector<dem::GrainSeed> seeds;

@@ -72,8 +72,8 @@ void run(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
-                                                              {"trt", lbm::CollisionModel::trt}};
+  std::map<std::string, lbm::CollisionModel> collisions;
+  for (const auto& choice : lbm::choices_of(lbm::CollisionModel())) collisions.emplace(choice.name, choice.value);
   app.add_option("--cells", o.cells, "cells along a side");
   app.add_option("--excess", o.excess, "relaxation time less 1/2");
   auto* smagorinsky = app.add_option("--smagorinsky", o.smagorinsky, "Smagorinsky's constant");

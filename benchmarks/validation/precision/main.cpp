@@ -8,8 +8,8 @@
 //            velocity, and of the velocity field.
 // No faster than 0.05: at a relaxation time of 0.503 bgk is unstable at walls beyond that (docs/stability.md).
 // Differences are divided by the largest velocity, or by the force in double. Prints a table in Markdown.
+#include "bodies/links/interpolated_bounce_back.hpp"
 #include "bodies/links/link_builder.hpp"
-#include "bodies/links/link_pass.hpp"
 #include "bodies/map/body_map.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "lbm/fluid/fluid.hpp"
@@ -84,7 +84,7 @@ Result sphere(double excess, double velocity) {
   map.begin_update();
   bodies[0].radius = 0.5 * diameter;
   bodies[0].centre = Vec3(12.3, 11.9, 12.1);
-  map.place(map.add(0, bodies[0].radius), bodies[0].centre);
+  map.remap(map.add(0, bodies[0].radius), bodies[0].centre);
   map.settle();
   builder.update(map, links);
   fluid.initialise([&](const Vec3&) { return lbm::FluidState{0.0, Vec3(velocity, 0.0, 0.0)}; });
@@ -96,7 +96,7 @@ Result sphere(double excess, double velocity) {
   for (int step = 0; step < steps; ++step) {
     fluid.exchange_halo();
     bodies[0].force = bodies[0].torque = {};
-    bodies::LinkPass pass(fluid, links, box, options, bodies);
+    bodies::InterpolatedBounceBack pass(fluid, links, box, options, bodies);
     fluid.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     drag = bodies[0].force.to_vec3().x();
   }

@@ -142,11 +142,11 @@ std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) 
   }
   if (mode == "links") {
     std::vector<Setting> settings;
-    for (const auto& [collision, name] :
-         {std::pair{lbm::CollisionModel::bgk, "bgk"}, {lbm::CollisionModel::trt, "trt"}})
+    for (const lbm::CollisionModel collision : {lbm::CollisionModel::bgk, lbm::CollisionModel::trt})
       for (const auto& [links, rule] :
            {std::pair{bodies::LinkRule::bouzidi, "bouzidi"}, {bodies::LinkRule::cli, "cli"}})
-        settings.push_back({fmt::format("{}, {}", rule, name), 1.0, Covered::lost, links, collision});
+        settings.push_back(
+            {fmt::format("{}, {}", rule, lbm::traits_of(collision).name), 1.0, Covered::lost, links, collision});
     return {"links", settings};
   }
   if (argc > 1) {

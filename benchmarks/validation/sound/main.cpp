@@ -52,10 +52,8 @@ Sound measure(const lbm::CollisionParameters& parameters, int cells) {
 
 void run() {
   using lbm::CollisionModel;
-  constexpr std::pair<const char*, CollisionModel> models[] = {{"bgk", CollisionModel::bgk},
-                                                               {"trt", CollisionModel::trt}};
   fmt::print("collision,cells,tau,tau_b,speed,damping\n");
-  for (const auto& [name, model] : models)
+  for (const CollisionModel model : {CollisionModel::bgk, CollisionModel::trt})
     for (const int cells : {96, 384})
       for (const double tau : {0.503, 0.6, 0.8})
         for (const double tau_b : {0.0, 1.0, 3.0, 10.0, 30.0, 100.0}) {
@@ -64,7 +62,8 @@ void run() {
           parameters.relaxation_time = tau;
           parameters.bulk_relaxation_time = tau_b;
           const Sound sound = measure(parameters, cells);
-          fmt::print("{},{},{},{},{:.6f},{:.5e}\n", name, cells, tau, tau_b, sound.speed, sound.damping);
+          fmt::print("{},{},{},{},{:.6f},{:.5e}\n", traits_of(model).name, cells, tau, tau_b, sound.speed,
+                     sound.damping);
         }
 }
 

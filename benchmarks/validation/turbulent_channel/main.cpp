@@ -193,8 +193,8 @@ private:
 
 void add_options(CLI::App& app, Options& o) {
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  const std::map<std::string, lbm::CollisionModel> collisions{{"bgk", lbm::CollisionModel::bgk},
-                                                              {"trt", lbm::CollisionModel::trt}};
+  std::map<std::string, lbm::CollisionModel> collisions;
+  for (const auto& choice : lbm::choices_of(lbm::CollisionModel())) collisions.emplace(choice.name, choice.value);
   const std::map<std::string, lbm::FaceType> walls{{"no_slip", lbm::FaceType::no_slip},
                                                    {"law_of_the_wall", lbm::FaceType::law_of_the_wall},
                                                    {"slip_law_of_the_wall", lbm::FaceType::slip_law_of_the_wall}};

@@ -24,8 +24,8 @@ void looks_without_touching(bool side_walls) {
   StressBalance of_one = balance_of(box, *serial, 1.25e-3, {}, MPI_COMM_SELF);
   StressBalance again = balance_of(box, *watched, 1.25e-3, {});
   for (int step = 0; step < 20; ++step) {
-    watched->book_momentum();
-    serial->book_momentum();
+    watched->record_momentum();
+    serial->record_momentum();
     watched->advance();
     alone->advance();
     serial->advance();

@@ -38,7 +38,7 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
 // takes out of the loads (docs/theory.md, section 3).
 void measure(StressBalance& balance, LatticeSystem<double>& system) {
   for (int n = 0; n < 20; ++n) {
-    system.book_momentum();
+    system.record_momentum();
     system.advance();
     balance.observe(system.snapshot());
   }
@@ -169,7 +169,7 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   double holding = 0.0;
   constexpr int steps = 20;
   for (int n = 0; n < steps; ++n) {
-    system->book_momentum();
+    system->record_momentum();
     system->advance();
     const Snapshot snapshot = system->snapshot();
     balance.observe(snapshot);

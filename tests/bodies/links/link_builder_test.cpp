@@ -35,7 +35,7 @@ std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<doub
           if (!cells.is_fluid(cell) || body == lbm::CellMap::fluid) continue;
           const std::int32_t upstream = cells.body(cell - fluid.indexing().offset(i));
           links.insert({static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(fluid.tiles().tile_of(y, z)),
-                        LinkPlace::of(x, y),
+                        LinkXY::of(x, y),
                         LinkTag::of(i, upstream, thalweg::test::is_enclosed_by_definition({x, y, z}, is_fluid))});
         }
       }
@@ -49,8 +49,8 @@ std::set<std::array<std::uint32_t, 4>> links_kept(const LinkTable& table) {
     const LinkTable::Tile& t = table.tiles()[tile];
     for (const LinkTable::Chunk& chunk : t.chunks)
       for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k)
-        kept.insert({static_cast<std::uint32_t>(chunk.body), static_cast<std::uint32_t>(tile), t.links.place[k],
-                     t.links.tag[k]});
+        kept.insert(
+            {static_cast<std::uint32_t>(chunk.body), static_cast<std::uint32_t>(tile), t.links.xy[k], t.links.tag[k]});
   }
   return kept;
 }
@@ -70,7 +70,7 @@ std::map<std::pair<std::int32_t, std::int32_t>, Vec3> patches_by_definition(cons
           std::int32_t q = fluid.cells().body(cell - fluid.indexing().offset(i));
           for (int a = 0; a < 3; ++a)
             if (!decomposition.periodic()[a] && (from[a] < 0 || from[a] >= n[a]))
-              q = HiddenPatches::wall_of_face(2 * a + (from[a] < 0 ? 0 : 1));
+              q = OccludedPatches::wall_of_face(2 * a + (from[a] < 0 ? 0 : 1));
           if (q == p || q == lbm::CellMap::fluid) continue;
           Vec3& sum = patches.try_emplace({p, q}, Vec3::Zero()).first->second;
           for (int a = 0; a < 3; ++a) sum[a] += lbm::D3Q19::weight(i) * lbm::D3Q19::c[i][a];
@@ -99,14 +99,14 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     for (GlobalId id = 0; id < grains; ++id) {
       const int slot = map.slot_of(id);
       if (slot < 0) {
-        if (uniform(generator) < 0.5) map.place(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
+        if (uniform(generator) < 0.5) map.remap(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
       } else if (uniform(generator) < 0.05) {
         map.remove(slot);
       } else if (uniform(generator) < 0.7) {
         const Vec3 step =
             0.3 * (Vec3(uniform(generator), uniform(generator), uniform(generator)) - Vec3::Constant(0.5));
         const PeriodicBox box{Vec3(cells[0], cells[1], cells[2]), {true, true, false}};
-        map.place(slot, uniform(generator) < 0.9 ? box.wrapped(map.bodies()[slot].centre + step) : anywhere());
+        map.remap(slot, uniform(generator) < 0.9 ? box.wrapped(map.bodies()[slot].centre + step) : anywhere());
       }
     }
     map.settle();
@@ -119,7 +119,7 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
     for (std::size_t slot = 0; slot < whole.size(); ++slot)
       whole[slot] = table.sums_of(static_cast<int>(slot)).normal();
     for (const auto& [pair, sum] : patches_by_definition(fluid, decomposition)) {
-      ASSERT_LT((map.hidden_patches().patch(pair.first, pair.second) - sum).norm(), 1e-12) << "round " << round;
+      ASSERT_LT((map.occluded_patches().patch(pair.first, pair.second) - sum).norm(), 1e-12) << "round " << round;
       whole[static_cast<std::size_t>(pair.first)] += sum;
     }
     for (const Vec3& sum : whole) ASSERT_LT(sum.norm(), 1e-12) << "round " << round;
@@ -150,14 +150,14 @@ TEST(LinkBuilder, KnowsWhichCellsAreEnclosed) {
     return count;
   };
   map.begin_update();
-  for (int i = 1; i < 19; ++i) map.place(map.add(i, 0.6), beside(i));
+  for (int i = 1; i < 19; ++i) map.remap(map.add(i, 0.6), beside(i));
   EXPECT_EQ(enclosed_links(), 18);
   for (int i = 1; i < 19; ++i) {
     map.begin_update();
-    map.place(map.slot_of(i), Vec3(2.5, 4.5, 4.5));
+    map.remap(map.slot_of(i), Vec3(2.5, 4.5, 4.5));
     EXPECT_EQ(enclosed_links(), 0) << "grain " << i << " away";
     map.begin_update();
-    map.place(map.slot_of(i), beside(i));
+    map.remap(map.slot_of(i), beside(i));
     EXPECT_EQ(enclosed_links(), 18) << "grain " << i << " back";
   }
 }

@@ -57,7 +57,7 @@ public:
     const std::vector<GlobalId> before = holders();
     for (auto& [id, ball] : balls_) {
       ball.centre = wrapped(ball.centre + way * Vec3(2.0 * draw() - 1.0, 2.0 * draw() - 1.0, 2.0 * draw() - 1.0));
-      map_.place(slots_[id], ball.centre);
+      map_.remap(slots_[id], ball.centre);
     }
     const std::vector<CellChange> changes = map_.settle();
     const std::vector<GlobalId> after = holders();

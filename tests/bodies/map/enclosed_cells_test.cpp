@@ -36,7 +36,7 @@ public:
     map_.begin_update();
     for (const Ball& ball : balls) {
       if (map_.slot_of(ball.id) < 0) map_.add(ball.id, ball.radius);
-      map_.place(map_.slot_of(ball.id), ball.centre);
+      map_.remap(map_.slot_of(ball.id), ball.centre);
     }
     map_.settle();
     enclosed_.update(map_);
@@ -59,8 +59,8 @@ public:
   }
 
 private:
-  static lbm::WallPlaces walls(const Block& block) {
-    lbm::WallPlaces places;
+  static lbm::WallPositions walls(const Block& block) {
+    lbm::WallPositions places;
     places.lower[2] = -block.lower[2];
     places.upper[2] = size[2] - block.lower[2];
     return places;

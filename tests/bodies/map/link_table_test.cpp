@@ -12,15 +12,15 @@ namespace {
 // Every other body has its crossings stored.
 bool stores_crossings(std::int32_t body) { return body % 2 == 0; }
 
-// What LinkTable says of the links of a run: those with a covered cell come first, copies of the last fill it up.
-void expect_whole_vectors(const LinkStream& links, const LinkTable::Run& run) {
-  for (std::uint32_t k = 0; k < run.count; ++k)
-    ASSERT_EQ(LinkTag::is_covered(links.tag[run.first + k]), k < run.covered);
-  const std::uint32_t last = run.first + run.count - 1;
-  for (std::uint32_t k = last + 1; k < run.first + padded(run.count); ++k) {
-    ASSERT_EQ(links.place[k], links.place[last]);
+// What LinkTable says of the links of a range: those with a narrow cell come first, copies of the last fill it up.
+void expect_whole_vectors(const LinkStream& links, const LinkTable::LinkRange& range) {
+  for (std::uint32_t k = 0; k < range.count; ++k)
+    ASSERT_EQ(LinkTag::is_narrow(links.tag[range.first + k]), k < range.narrow);
+  const std::uint32_t last = range.first + range.count - 1;
+  for (std::uint32_t k = last + 1; k < range.first + padded(range.count); ++k) {
+    ASSERT_EQ(links.xy[k], links.xy[last]);
     ASSERT_EQ(links.tag[k], links.tag[last]);
-    if (stores_crossings(run.body)) {
+    if (stores_crossings(range.body)) {
       ASSERT_EQ(links.crossing[k].distance, links.crossing[last].distance);
     }
   }
@@ -59,16 +59,16 @@ TEST(LinkTable, HoldsWhatWasPutInLast) {
     for (int t = 0; t < tiles; ++t) {
       const LinkTable::Tile& there = table.tiles()[t];
       std::size_t in_order = 0;
-      for (const LinkTable::Run& run : table.runs_in_order(t)) {
-        in_order += run.count;
-        expect_whole_vectors(there.links, run);
+      for (const LinkTable::LinkRange& range : table.ranges_in_order(t)) {
+        in_order += range.count;
+        expect_whole_vectors(there.links, range);
       }
       ASSERT_EQ(in_order, there.live);
       for (const LinkTable::Chunk& chunk : there.chunks)
         for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k, ++count) {
-          found[{chunk.body, t}].insert({there.links.place[k], there.links.tag[k]});
+          found[{chunk.body, t}].insert({there.links.xy[k], there.links.tag[k]});
           if (stores_crossings(chunk.body)) {
-            ASSERT_EQ(there.links.crossing[k].distance, static_cast<float>(there.links.place[k] % 1000));
+            ASSERT_EQ(there.links.crossing[k].distance, static_cast<float>(there.links.xy[k] % 1000));
           }
         }
     }

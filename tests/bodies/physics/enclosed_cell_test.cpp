@@ -1,5 +1,5 @@
 // A single cell of fluid with nothing but bodies beside it, or bodies and a floor: what its links do to its density.
-#include "bodies/links/link_pass.hpp"
+#include "bodies/links/interpolated_bounce_back.hpp"
 #include "lbm/fluid/fluid.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ protected:
     std::vector<LinkCrossing> crossings;
     for (int i = 1; i < lbm::D3Q19::directions; ++i) {
       if (fluid_.cells().is_fluid(cell() + fluid_.indexing().offset(i))) continue;
-      links.push_back({LinkPlace::of(place[0], place[1]), LinkTag::of(i, 0, true)});
+      links.push_back({LinkXY::of(place[0], place[1]), LinkTag::of(i, 0, true)});
       crossings.push_back({static_cast<float>(i) / 19.0f, {}});  // no two alike
     }
     links_.replace(0, fluid_.tiles().tile_of(place[1], place[2]), links, crossings);
@@ -63,7 +63,7 @@ protected:
       fluid_.exchange_halo();
       fluid_.apply_walls();
       bodies_[0].clear_sums();
-      LinkPass<double> pass(fluid_, links_, box_, options_, bodies_);
+      InterpolatedBounceBack<double> pass(fluid_, links_, box_, options_, bodies_);
       fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
       given += LatticeFixed::to_double(bodies_[0].mass);
     }
@@ -87,7 +87,7 @@ TEST_P(EnclosedCell, KeepsTheDensityOfRestWhateverItsBodiesReturn) {
   const double given = run(500);
   // Interpolation and force add what is of their order.
   EXPECT_NEAR(density_deviation(), bodies_[0].returned, 5.0 * force);
-  EXPECT_NEAR(given, density_deviation() - before, 1e-9) << "not all of the loss is booked";
+  EXPECT_NEAR(given, density_deviation() - before, 1e-9) << "not all of the loss is recorded";
   const double later = density_deviation();
   run(500);
   EXPECT_NEAR(density_deviation(), later, 1e-9) << "still changing";

@@ -1,5 +1,5 @@
 // A gap of one cell between two bodies, so large that they are flat: what flows along it under a force.
-#include "bodies/links/link_pass.hpp"
+#include "bodies/links/interpolated_bounce_back.hpp"
 #include "core/geometry/sphere.hpp"
 #include "lbm/fluid/fluid.hpp"
 
@@ -38,7 +38,7 @@ public:
     for (int step = 0; step < steps; ++step) {
       fluid_.exchange_halo();
       for (LinkBody& body : bodies_) body.clear_sums();
-      LinkPass pass(fluid_, links_, box_, options_, bodies_);
+      InterpolatedBounceBack pass(fluid_, links_, box_, options_, bodies_);
       fluid_.stream_and_collide([&](int tile) { pass.apply_tile(tile); });
     }
   }
@@ -69,7 +69,7 @@ private:
     for (int y = first; y < cells[1] && fluid_.tiles().tile_of(y, 1) == tile; ++y)
       for (int x = 0; x < cells[0]; ++x)
         for (int i = 1; i < lbm::D3Q19::directions; ++i)
-          if (lbm::D3Q19::c[i][2] == 2 * body - 1) links.push_back({LinkPlace::of(x, y), LinkTag::of(i, 1 - body)});
+          if (lbm::D3Q19::c[i][2] == 2 * body - 1) links.push_back({LinkXY::of(x, y), LinkTag::of(i, 1 - body)});
     links_.replace(body, tile, links);
   }
 

@@ -11,7 +11,7 @@ namespace {
 
 // Let go at rest in a slot two diameters wide, at a fifth of the step that a free grain would need: sound between the
 // grains is hardly damped at tau - 1/2 = 9e-5.
-WaterBox slot(LoadRule load) {
+WaterBox slot(LoadAveraging load) {
   WaterBox box;
   box.cells = {24, 13, 40};
   box.periodic = {true, true, false};
@@ -48,14 +48,14 @@ Energy after(const WaterBox& box, int steps) {
 
 // Grains cannot have more energy than their weight has set free.
 TEST(CalmBed, HasNoMoreEnergyThanItsWeightSetsFree) {
-  const Energy energy = after(slot(LoadRule::extrapolated), 3000);
+  const Energy energy = after(slot(LoadAveraging::extrapolated), 3000);
   EXPECT_GT(energy.released, 0.0);
   EXPECT_LT(energy.kinetic, energy.released);
 }
 
 // The published mean of two exchanges does not pass: the test above looks at what it should.
 TEST(CalmBed, ShakesUnderTheMeanOfTwoExchanges) {
-  const Energy energy = after(slot(LoadRule::mean), 3000);
+  const Energy energy = after(slot(LoadAveraging::mean), 3000);
   EXPECT_GT(energy.kinetic, energy.released);
 }
 

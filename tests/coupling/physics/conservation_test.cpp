@@ -36,9 +36,9 @@ Vec3 momentum_of(const LatticeSystem<double>& system, std::ptrdiff_t cell) {
 // A dense crowd of grains (43 % of the volume) that collide, driven across a box without walls: the submerged weight
 // acts on the grains, gravity along the other axes on fluid and grains. Fluid and grains together gain gravity's
 // impulse, and what covered and refilled cells take and bring, less what the grains keep of it; of the exchanges F_1
-// ... F_n the extrapolated load has given the grains their sum and F_n-1/2 (load_rule.hpp). Left over is round-off: of
-// the grains' forces, 1e-16 a kick, and of fixed-point sums, 2^-45 a link, at random; the scale is the sum of all
-// impulses.
+// ... F_n the extrapolated load has given the grains their sum and F_n-1/2 (load_averaging.hpp). Left over is
+// round-off: of the grains' forces, 1e-16 a kick, and of fixed-point sums, 2^-45 a link, at random; the scale is the
+// sum of all impulses.
 void balance_of_a_crowd(int steps) {
   WaterBox box;
   box.cells = {20, 20, 20};

@@ -23,8 +23,8 @@ TEST_P(GrainStress, HasTheTorqueAsItsAntisymmetricPart) {
   box.fluid_velocity = Vec3(0.3, -0.1, 0.0);
   box.links.momentum_exchange = GetParam();
   box.grain_stress = true;
-  box.load = LoadRule::mean;    // as the stress is averaged
-  for (int k = 0; k < 16; ++k)  // neighbours closer than a cell
+  box.load = LoadAveraging::mean;  // as the stress is averaged
+  for (int k = 0; k < 16; ++k)     // neighbours closer than a cell
     box.seeds.push_back(
         glass_sphere(k, Vec3(5.2e-3 * (k % 4) + 0.7e-3, 5.1e-3 * (k / 4 % 2) + 4e-3, 5.3e-3 * (k / 8) + 8e-3),
                      Vec3(0.2 - 0.04 * k, 0.04 * (k % 3), 0.01 * k)));

@@ -79,7 +79,8 @@ TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
     // As in balance_test.cpp: the totals round every cell to within 2^-37.
     ASSERT_LT((after.momentum - before.momentum - exchanged).norm(), 2.0 * 0x1p-37 * static_cast<double>(after.cells));
     before = after;
-    // The load applied in the next step is extrapolated from the last three exchanges (coupling/loads/load_rule.hpp).
+    // The load applied in the next step is extrapolated from the last three exchanges
+    // (coupling/loads/load_averaging.hpp).
     const dem::GrainStore& s = system->grains().store();
     std::vector<double> load;
     for (std::size_t g = 0; g < s.owned; ++g)

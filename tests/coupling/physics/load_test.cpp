@@ -1,6 +1,6 @@
 // The load of a step from the exchanges up to then, and the filter of light grains.
 #include "coupling/loads/light_load.hpp"
-#include "coupling/loads/load_rule.hpp"
+#include "coupling/loads/load_averaging.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 namespace thalweg::coupling::load_test {
 namespace {
 
-constexpr LoadRule both_rules[] = {LoadRule::extrapolated, LoadRule::mean};
+constexpr LoadAveraging both_rules[] = {LoadAveraging::extrapolated, LoadAveraging::mean};
 
 // The loads of a grain that has had no exchange before.
-std::vector<Vec3> loads(LoadRule rule, const std::vector<Vec3>& exchanges) {
+std::vector<Vec3> loads(LoadAveraging rule, const std::vector<Vec3>& exchanges) {
   std::vector<Vec3> loads;
   Vec3 last = Vec3::Zero(), before_last = Vec3::Zero();
   for (const Vec3& now : exchanges) {
-    loads.push_back(load_of(rule, now, last, before_last));
+    loads.push_back(averaged_load(rule, now, last, before_last));
     before_last = last;
     last = now;
   }
@@ -24,7 +24,7 @@ std::vector<Vec3> loads(LoadRule rule, const std::vector<Vec3>& exchanges) {
 }
 
 TEST(Load, GivesTheImpulseOfEveryExchangeInFull) {
-  for (const LoadRule rule : both_rules)
+  for (const LoadAveraging rule : both_rules)
     for (std::size_t struck = 0; struck < 4; ++struck) {
       std::vector<Vec3> exchanges(8, Vec3::Zero());
       exchanges[struck] = Vec3(3.0, -2.0, 0.5);
@@ -37,15 +37,15 @@ TEST(Load, GivesTheImpulseOfEveryExchangeInFull) {
 TEST(Load, HasNoPartThatAlternatesFromStepToStep) {
   std::vector<Vec3> exchanges;
   for (int n = 0; n < 8; ++n) exchanges.push_back(Vec3(1.0, 2.0, n % 2 == 0 ? 5.0 : -5.0));
-  for (const LoadRule rule : both_rules) EXPECT_EQ(loads(rule, exchanges).back(), Vec3(1.0, 2.0, 0.0));
+  for (const LoadAveraging rule : both_rules) EXPECT_EQ(loads(rule, exchanges).back(), Vec3(1.0, 2.0, 0.0));
 }
 
 // Of a force that grows evenly the load is that of the middle of the coming step, one step after the mean.
 TEST(Load, HasNoLagWhereItIsExtrapolated) {
   std::vector<Vec3> exchanges;
   for (int n = 0; n < 8; ++n) exchanges.push_back(Vec3(n, 0.0, 0.0));
-  EXPECT_EQ(loads(LoadRule::mean, exchanges).back().x(), 6.5);
-  EXPECT_EQ(loads(LoadRule::extrapolated, exchanges).back().x(), 7.5);
+  EXPECT_EQ(loads(LoadAveraging::mean, exchanges).back().x(), 6.5);
+  EXPECT_EQ(loads(LoadAveraging::extrapolated, exchanges).back().x(), 7.5);
 }
 
 constexpr LightLoad water{1000.0, 5e-4};  // kg/m^3, m

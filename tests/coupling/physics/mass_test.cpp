@@ -88,7 +88,7 @@ void balance_closes(const WaterBox& box, int steps) {
   EXPECT_GT(turned_over, 1.0);  // the terms are there
 }
 
-TEST(WaterMass, IsBookedToRoundOffInEveryStep) {
+TEST(WaterMass, IsRecordedToRoundOffInEveryStep) {
   for (const Sides sides : {Sides::periodic, Sides::flume, Sides::closed}) {
     balance_closes<double>(crowd(sides), 150);
     balance_closes<float>(crowd(sides), 150);
@@ -96,7 +96,7 @@ TEST(WaterMass, IsBookedToRoundOffInEveryStep) {
   balance_closes<double>(crowd(Sides::closed, true), 150);
 }
 
-TEST(WaterMass, IsBookedForTheOtherLinkRule) {
+TEST(WaterMass, IsRecordedForTheOtherLinkRule) {
   WaterBox box = crowd(Sides::periodic);
   box.links.rule = bodies::LinkRule::cli;
   balance_closes<double>(box, 80);

@@ -48,7 +48,7 @@ std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const LatticeSys
     for (const auto& chunk : tile.chunks)
       for (std::uint32_t k = chunk.first; chunk.body >= 0 && k < chunk.first + chunk.count; ++k) {
         const bodies::LinkCrossing& crossing = tile.links.crossing[k];
-        all[{number, tile.links.place[k], static_cast<int>(tile.links.tag[k] & bodies::LinkTag::direction_mask)}] = {
+        all[{number, tile.links.xy[k], static_cast<int>(tile.links.tag[k] & bodies::LinkTag::direction_mask)}] = {
             crossing.distance, {crossing.arm[0], crossing.arm[1], crossing.arm[2]}};
       }
     ++number;

@@ -16,7 +16,7 @@ bool has_covered_neighbour(const CellMap& map, std::ptrdiff_t cell) {
 }
 
 // By what stands at the ends of each line through the cell: a body on one side; a body or a wall on the other.
-bool is_in_gap(const CellMap& map, const WallPlaces& walls, const Index3& cell) {
+bool is_in_gap(const CellMap& map, const WallPositions& walls, const Index3& cell) {
   const std::ptrdiff_t at = map.indexing().index(cell[0], cell[1], cell[2]);
   for (int i = 1; i < D3Q19::directions; ++i) {
     if (map.is_fluid(at + map.indexing().offset(i))) continue;
@@ -31,7 +31,7 @@ bool is_in_gap(const CellMap& map, const WallPlaces& walls, const Index3& cell) 
 // Bodies that come, go and take cells from each other, in the block and in its ghost cells; a floor at the block's
 // lower end, and a wall two cells beyond its upper end along y.
 TEST(CellMap, KnowsWhichCellsHaveABodyBesideThemAndWhichAreInGaps) {
-  WallPlaces walls;
+  WallPositions walls;
   walls.lower[2] = 0;
   walls.upper[1] = size[1] + 2;
   for (const int pack : {4, 8, 16}) {

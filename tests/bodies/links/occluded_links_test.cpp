@@ -1,5 +1,5 @@
 // Patches of a grain's surface that other grains or a wall hide: what the fluid's weight does there.
-#include "bodies/links/hidden_links.hpp"
+#include "bodies/links/occluded_links.hpp"
 
 #include "bodies/map/body_map.hpp"
 #include "core/parallel/mpi_session.hpp"
@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace thalweg::bodies::hidden_links_test {
+namespace thalweg::bodies::occluded_links_test {
 namespace {
 
 using lbm::D3Q19;
@@ -62,7 +62,7 @@ std::vector<Load> loads_by_definition(const std::vector<Ball>& balls, const Hydr
 }
 
 // Touching and overlapping balls, one pair across the periodic faces, one on the floor. Fixed-point sums: 2^-45 a link.
-TEST(HiddenLinks, CarryWhatTheDefinitionSaysOnAnyRanks) {
+TEST(OccludedLinks, CarryWhatTheDefinitionSaysOnAnyRanks) {
   const std::vector<Ball> balls{{Vec3(0.6, 7.1, 5.2), 3.0}, {Vec3(6.3, 6.3, 5.9), 3.1}, {Vec3(11.9, 9.4, 2.9), 3.2}};
   const Decomposition decomposition(cells, 1.0, {true, true, false},
                                     Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD)));
@@ -71,11 +71,11 @@ TEST(HiddenLinks, CarryWhatTheDefinitionSaysOnAnyRanks) {
   lbm::Fluid<double> fluid(decomposition, MPI_COMM_WORLD, {}, faces);
   BodyMap map(decomposition, fluid.block(), fluid.cells());
   const Hydrostatic rest = hydrostatic_under(Vec3(0.0, 0.0, -1e-3), decomposition);
-  HiddenLinks links(decomposition, fluid.block(), fluid.cells(), rest);
+  OccludedLinks links(decomposition, fluid.block(), fluid.cells(), rest);
   std::vector<LinkBody> bodies(balls.size());
   map.begin_update();
   for (std::size_t s = 0; s < balls.size(); ++s) {
-    map.place(map.add(static_cast<GlobalId>(s), balls[s].radius), balls[s].centre);
+    map.remap(map.add(static_cast<GlobalId>(s), balls[s].radius), balls[s].centre);
     bodies[s].radius = balls[s].radius;
     bodies[s].centre = balls[s].centre;
   }
@@ -92,4 +92,4 @@ TEST(HiddenLinks, CarryWhatTheDefinitionSaysOnAnyRanks) {
 }
 
 }  // namespace
-}  // namespace thalweg::bodies::hidden_links_test
+}  // namespace thalweg::bodies::occluded_links_test

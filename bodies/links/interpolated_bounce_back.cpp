@@ -1,4 +1,4 @@
-#include "bodies/links/link_pass.hpp"
+#include "bodies/links/interpolated_bounce_back.hpp"
 
 #include "bodies/links/fixed_sums.hpp"
 #include "bodies/links/link_rules.hpp"
@@ -12,9 +12,10 @@ namespace thalweg::bodies {
 namespace stdx = std::experimental;
 
 template <typename Real>
-LinkPass<Real>::LinkPass(lbm::Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
-                         const LinkOptions& options, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments,
-                         std::vector<FixedVec3>* by_height)
+InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links,
+                                                     const PeriodicBox& box, const LinkOptions& options,
+                                                     std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments,
+                                                     std::vector<FixedVec3>* by_height)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -35,7 +36,7 @@ LinkPass<Real>::LinkPass(lbm::Fluid<Real>& fluid, const LinkTable& links, const 
 }
 
 template <typename Real>
-void LinkPass<Real>::apply_tile(int tile) {
+void InterpolatedBounceBack<Real>::apply_tile(int tile) {
   const auto apply = [&]<typename Rule>() {
     moments_ ? apply_links<Rule, true>(tile) : apply_links<Rule, false>(tile);
   };
@@ -47,7 +48,7 @@ void LinkPass<Real>::apply_tile(int tile) {
 
 template <typename Real>
 template <typename Rule, bool with_moments>
-void LinkPass<Real>::apply_links(int tile) {
+void InterpolatedBounceBack<Real>::apply_links(int tile) {
   // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
   // into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
@@ -61,11 +62,11 @@ void LinkPass<Real>::apply_links(int tile) {
     next_.begin(tile + 2);
   else
     next_.begin_nothing();
-  const std::vector<LinkTable::Run>& runs = links_.runs_in_order(tile);
+  const std::vector<LinkTable::LinkRange>& ranges = links_.ranges_in_order(tile);
   const auto ask_for = [&](std::size_t r) {
-    if (r >= runs.size()) return;
-    t.links.prefetch(runs[r].first, runs[r].count);
-    bodies_[static_cast<std::size_t>(runs[r].body)].prefetch();
+    if (r >= ranges.size()) return;
+    t.links.prefetch(ranges[r].first, ranges[r].count);
+    bodies_[static_cast<std::size_t>(ranges[r].body)].prefetch();
   };
   constexpr std::size_t ahead = 3;  // runs
   for (std::size_t r = 0; r < ahead; ++r) ask_for(r);
@@ -79,13 +80,13 @@ void LinkPass<Real>::apply_links(int tile) {
     batches_[turn].clear(z);
     next_.advance(static_cast<double>(done) / static_cast<double>(t.live));
   };
-  for (std::size_t r = 0; r < runs.size(); ++r) {
+  for (std::size_t r = 0; r < ranges.size(); ++r) {
     ask_for(r + ahead);
-    const LinkTable::Run& run = runs[r];
-    for (int from = 0; from < static_cast<int>(run.count);) {
+    const LinkTable::LinkRange& range = ranges[r];
+    for (int from = 0; from < static_cast<int>(range.count);) {
       Batch& batch = batches_[turn];
-      const int count = std::min(capacity - batch.size, static_cast<int>(run.count) - from);
-      append(batch, t, run, from, count);
+      const int count = std::min(capacity - batch.size, static_cast<int>(range.count) - from);
+      append(batch, t, range, from, count);
       from += count;
       done += static_cast<std::size_t>(count);
       if (batch.size == capacity) pass_on();
@@ -98,7 +99,7 @@ void LinkPass<Real>::apply_links(int tile) {
 // Links never change what is measured: they write incoming slots of fluid cells, which hold no post-collision
 // population of a fluid cell.
 template <typename Real>
-void LinkPass<Real>::measure_densities(int tile) {
+void InterpolatedBounceBack<Real>::measure_densities(int tile) {
   if (links_.tiles()[tile].live == 0) return;
   constexpr std::ptrdiff_t width = Pack::size();
   const lbm::CellIndexing& indexing = cells_.indexing();
@@ -120,22 +121,22 @@ void LinkPass<Real>::measure_densities(int tile) {
 
 // Links [from, from + count) of a run, where there is room for them.
 template <typename Real>
-void LinkPass<Real>::append(Batch& b, const LinkTable::Tile& tile, const LinkTable::Run& run, int from,
-                            int count) const {
+void InterpolatedBounceBack<Real>::append(Batch& b, const LinkTable::Tile& tile, const LinkTable::LinkRange& range,
+                                          int from, int count) const {
   const int start = b.size, n = padded(count);
-  const std::int32_t body = run.body;
-  const std::uint32_t first = run.first + static_cast<std::uint32_t>(from);
-  const int covered = std::clamp(static_cast<int>(run.covered) - from, 0, count);
-  b.piece[b.pieces++] = {body, start, count, covered == count ? n : covered};
+  const std::int32_t body = range.body;
+  const std::uint32_t first = range.first + static_cast<std::uint32_t>(from);
+  const int narrow = std::clamp(static_cast<int>(range.narrow) - from, 0, count);
+  b.piece[b.pieces++] = {body, start, count, narrow == count ? n : narrow};
   for (int k = 0; k < n; k += links_at_a_time) {
-    std::copy_n(tile.links.place.data() + first + k, links_at_a_time, b.place + start + k);
+    std::copy_n(tile.links.xy.data() + first + k, links_at_a_time, b.xy + start + k);
     std::copy_n(tile.links.tag.data() + first + k, links_at_a_time, b.tag + start + k);
     b.body[(start + k) / links_at_a_time] = body;
   }
   b.size += n;
   const LinkBody& of = bodies_[static_cast<std::size_t>(body)];
   if (of.radius > 0.0) {
-    find_crossings(Sphere{of.radius}, of.centre, block_, b.plane, b.place + start, b.tag + start, n, b.distance + start,
+    find_crossings(Sphere{of.radius}, of.centre, block_, b.plane, b.xy + start, b.tag + start, n, b.distance + start,
                    b.arm[0] + start, b.arm[1] + start, b.arm[2] + start);
   } else {
     for (int k = 0; k < n; ++k) {
@@ -148,8 +149,8 @@ void LinkPass<Real>::append(Batch& b, const LinkTable::Tile& tile, const LinkTab
 
 template <typename Real>
 template <typename Rule>
-void LinkPass<Real>::prepare(Batch& b) const {
-  slots_.find(b.plane, b.place, b.tag, b.size, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
+void InterpolatedBounceBack<Real>::prepare(Batch& b) const {
+  slots_.find(b.plane, b.xy, b.tag, b.size, b.distance, b.cell, b.incident_at, b.second_at, b.reflected_at);
   for (int k = 0; k < b.size; ++k) {
     __builtin_prefetch(base_ + b.incident_at[k], 0);
     __builtin_prefetch(base_ + b.second_at[k], 0);
@@ -158,25 +159,25 @@ void LinkPass<Real>::prepare(Batch& b) const {
   std::uint32_t flags = 0;
   for (int k = 0; k < b.size; ++k) flags |= b.tag[k];
   b.leaks = (flags & LinkTag::enclosed) != 0;
-  find_covered<Rule>(b);
+  find_narrow<Rule>(b);
 }
 
 template <typename Real>
 template <typename Rule>
-void LinkPass<Real>::find_covered(Batch& b) const {
+void InterpolatedBounceBack<Real>::find_narrow(Batch& b) const {
   int count = 0;
   for (int p = 0; p < b.pieces && !Rule::needs_both; ++p)
-    for (int k = b.piece[p].first; k < b.piece[p].covered_end(); ++k) {
-      b.covered[count] = k;
+    for (int k = b.piece[p].first; k < b.piece[p].narrow_end(); ++k) {
+      b.narrow[count] = k;
       count += static_cast<int>(b.distance[k] < Real(0.5));
     }
-  b.covered_count = count;
-  for (int c = 0; c < count; ++c) bodies_[LinkTag::upstream_body(b.tag[b.covered[c]])].prefetch();
+  b.narrow_count = count;
+  for (int c = 0; c < count; ++c) bodies_[LinkTag::upstream_body(b.tag[b.narrow[c]])].prefetch();
 }
 
 template <typename Real>
 template <typename Rule, bool with_moments>
-void LinkPass<Real>::finish(const Batch& b) {
+void InterpolatedBounceBack<Real>::finish(const Batch& b) {
   gather<Rule>(b);
   for (int p = 0; p < b.pieces; ++p) {
     const Piece& piece = b.piece[p];
@@ -190,7 +191,7 @@ void LinkPass<Real>::finish(const Batch& b) {
 
 template <typename Real>
 template <typename Rule>
-void LinkPass<Real>::gather(const Batch& b) {
+void InterpolatedBounceBack<Real>::gather(const Batch& b) {
   const Real* deviation = deviations_[parity_].data();
   for (int k = 0; k < b.size; ++k) {
     values_.deviation[k] = deviation[b.cell[k]];
@@ -198,10 +199,10 @@ void LinkPass<Real>::gather(const Batch& b) {
     values_.second[k] = base_[b.second_at[k]];
   }
   if constexpr (Rule::needs_both) {
-    forget_second_of_covered(b);
-    look_upstream(b);
+    clear_second_of_narrow(b);
+    gather_upstream(b);
   } else {
-    if (b.covered_count > 0) look_at_covered(b);
+    if (b.narrow_count > 0) gather_narrow(b);
   }
   if (has_rest_) subtract_rest(b);
   if (b.leaks) find_leaks(b);
@@ -210,13 +211,13 @@ void LinkPass<Real>::gather(const Batch& b) {
 // Where covered links have half-way bounce-back: the slot of x_ff is a solid cell's, which may hold anything, and no
 // weight, not even 0, takes an infinity or NaN out again.
 template <typename Real>
-void LinkPass<Real>::forget_second_of_covered(const Batch& b) {
+void InterpolatedBounceBack<Real>::clear_second_of_narrow(const Batch& b) {
   for (int p = 0; p < b.pieces; ++p)
-    std::fill(values_.second + b.piece[p].first, values_.second + b.piece[p].covered_end(), Real(0));
+    std::fill(values_.second + b.piece[p].first, values_.second + b.piece[p].narrow_end(), Real(0));
 }
 
 template <typename Real>
-void LinkPass<Real>::find_leaks(const Batch& b) {
+void InterpolatedBounceBack<Real>::find_leaks(const Batch& b) {
   const Real around = static_cast<Real>(options_.reference_density);
   for (int k = 0; k < b.size; ++k)
     values_.leak[k] = (b.tag[k] & LinkTag::enclosed) != 0 ? excess()[k] - around : Real(0);
@@ -224,7 +225,7 @@ void LinkPass<Real>::find_leaks(const Batch& b) {
 
 // x_f from the body's centre: the arm, back by the distance.
 template <typename Real>
-void LinkPass<Real>::subtract_rest(const Batch& b) {
+void InterpolatedBounceBack<Real>::subtract_rest(const Batch& b) {
   const Vec3& gradient = options_.rest_gradient;
   for (int p = 0; p < b.pieces; ++p) {
     const Piece& piece = b.piece[p];
@@ -239,30 +240,30 @@ void LinkPass<Real>::subtract_rest(const Batch& b) {
 }
 
 template <typename Real>
-void LinkPass<Real>::look_at_covered(const Batch& b) {
-  upstream_.begin(b.covered_count);
-  for (int c = 0; c < b.covered_count; ++c) {
-    const int k = b.covered[c];
+void InterpolatedBounceBack<Real>::gather_narrow(const Batch& b) {
+  upstream_.begin(b.narrow_count);
+  for (int c = 0; c < b.narrow_count; ++c) {
+    const int k = b.narrow[c];
     const LinkBody& other = bodies_[LinkTag::upstream_body(b.tag[k])];
     upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
                    box_.difference(body_of(b, k).centre, other.centre));
   }
   upstream_.find_populations(options_.rest_gradient);
-  for (int c = 0; c < b.covered_count; ++c) values_.second[b.covered[c]] = static_cast<Real>(upstream_.population(c));
+  for (int c = 0; c < b.narrow_count; ++c) values_.second[b.narrow[c]] = static_cast<Real>(upstream_.population(c));
 }
 
-// For a rule that needs both. Covered links have none (forget_second_of_covered()).
+// For a rule that needs both. Covered links have none (clear_second_of_narrow()).
 template <typename Real>
-void LinkPass<Real>::look_upstream(const Batch& b) {
+void InterpolatedBounceBack<Real>::gather_upstream(const Batch& b) {
   for (int p = 0; p < b.pieces; ++p)
-    for (int k = b.piece[p].covered_end(); k < b.piece[p].filled_end(); ++k)
+    for (int k = b.piece[p].narrow_end(); k < b.piece[p].filled_end(); ++k)
       values_.second[k] =
           base_[slots_.one_back(b.incident_at[k], b.tag[k])] - base_[slots_.one_back(b.reflected_at[k], b.tag[k])];
 }
 
 template <typename Real>
 template <typename Rule, bool with_moments>
-void LinkPass<Real>::reflect(const Batch& b, const Piece& piece) {
+void InterpolatedBounceBack<Real>::reflect(const Batch& b, const Piece& piece) {
   constexpr int width = static_cast<int>(Pack::size());
   const Body body(bodies_[static_cast<std::size_t>(piece.body)]);
   const Pack zero = Real(0), lane([](auto j) { return Real(static_cast<int>(j)); });
@@ -280,10 +281,10 @@ void LinkPass<Real>::reflect(const Batch& b, const Piece& piece) {
     const Pack towards_wall = cx * ux + cy * uy + cz * uz;
     LinkWeights<Pack> rule = Rule::weights(at(b.distance));
     if constexpr (Rule::needs_both) {  // half-way bounce-back in a gap of one cell
-      const typename Pack::mask_type covered = lane < Pack(Real(piece.covered_end() - k));
-      rule.incident = chosen<Pack>(covered, Pack(Real(1)), rule.incident);
-      rule.second = chosen<Pack>(covered, Pack(Real(0)), rule.second);
-      rule.wall = chosen<Pack>(covered, Pack(Real(6)), rule.wall);
+      const typename Pack::mask_type narrow = lane < Pack(Real(piece.narrow_end() - k));
+      rule.incident = chosen<Pack>(narrow, Pack(Real(1)), rule.incident);
+      rule.second = chosen<Pack>(narrow, Pack(Real(0)), rule.second);
+      rule.wall = chosen<Pack>(narrow, Pack(Real(6)), rule.wall);
     }
     const Pack deviation = at(values_.deviation), incident = at(values_.incident);
     const Pack density = Pack(Real(1)) + deviation;
@@ -317,7 +318,7 @@ void LinkPass<Real>::reflect(const Batch& b, const Piece& piece) {
 }
 
 template <typename Real>
-void LinkPass<Real>::add_momentum(const Piece& piece) const {
+void InterpolatedBounceBack<Real>::add_momentum(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<8> sums;
   for (int k = piece.first; k < piece.filled_end(); k += FixedSums<8>::width)
@@ -334,7 +335,7 @@ void LinkPass<Real>::add_momentum(const Piece& piece) const {
 }
 
 template <typename Real>
-void LinkPass<Real>::add_moments(const Piece& piece) const {
+void InterpolatedBounceBack<Real>::add_moments(const Piece& piece) const {
   const Values& v = values_;
   FixedSums<9> sums;
   for (int k = piece.first; k < piece.filled_end(); k += FixedSums<9>::width)
@@ -346,14 +347,14 @@ void LinkPass<Real>::add_moments(const Piece& piece) const {
 }
 
 template <typename Real>
-void LinkPass<Real>::add_by_height(const Batch& b, const Piece& piece) const {
+void InterpolatedBounceBack<Real>::add_by_height(const Batch& b, const Piece& piece) const {
   for (int k = piece.first; k < piece.end(); ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
     (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
   }
 }
 
-template class LinkPass<float>;
-template class LinkPass<double>;
+template class InterpolatedBounceBack<float>;
+template class InterpolatedBounceBack<double>;
 
 }  // namespace thalweg::bodies

@@ -19,12 +19,12 @@
 
 namespace thalweg::coupling {
 
-enum class LoadRule { extrapolated, mean };
-std::vector<NamedChoice<LoadRule>> choices_of(LoadRule);  // its words in a case file
+enum class LoadAveraging { extrapolated, mean };
+std::vector<NamedChoice<LoadAveraging>> choices_of(LoadAveraging);  // its words in a case file
 
 // Exchanges that have not been yet count as zero: every exchange gives its impulse in full, however a grain begins.
-inline Vec3 load_of(LoadRule rule, const Vec3& now, const Vec3& last, const Vec3& before_last) {
-  if (rule == LoadRule::mean) return 0.5 * (now + last);
+inline Vec3 averaged_load(LoadAveraging rule, const Vec3& now, const Vec3& last, const Vec3& before_last) {
+  if (rule == LoadAveraging::mean) return 0.5 * (now + last);
   return now + 0.5 * (last - before_last);
 }
 

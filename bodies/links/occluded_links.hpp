@@ -3,10 +3,10 @@
 //
 // A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
 // runs there, but a fluid between the two would press. The exchange counts populations less their weight
-// (link_pass.hpp), so that the reference pressure needs no such links. What is left under full gravity is the
-// hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g - 1) c_i, without which a
-// grain that touches others or the floor would lose part of its buoyancy. There is no surface between members of one
-// clump, and so no such link. Lattice units.
+// (interpolated_bounce_back.hpp), so that the reference pressure needs no such links. What is left under full gravity
+// is the hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g - 1) c_i, without
+// which a grain that touches others or the floor would lose part of its buoyancy. There is no surface between members
+// of one clump, and so no such link. Lattice units.
 #pragma once
 
 #include "bodies/map/body_map.hpp"
@@ -22,10 +22,10 @@
 
 namespace thalweg::bodies {
 
-class HiddenLinks {
+class OccludedLinks {
 public:
-  HiddenLinks(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
-              const Hydrostatic& rest);
+  OccludedLinks(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells,
+                const Hydrostatic& rest);
 
   // Finds anew the hidden links around cells that changed hands since the last call; does nothing where the density at
   // rest is the same everywhere. A link belongs to the rank that owns its solid cell.
@@ -54,11 +54,11 @@ private:
   LocalCells local_cells_;
   const lbm::CellMap& cells_;
   Hydrostatic rest_;
-  PeriodicBox box_;                       // cells
-  std::vector<std::vector<Link>> links_;  // by slot
-  std::vector<int> stale_;                // slots to look at anew
-  std::vector<char> is_stale_;            // by slot
-  std::vector<LocalCell> places_[3];      // scratch
+  PeriodicBox box_;                        // cells
+  std::vector<std::vector<Link>> links_;   // by slot
+  std::vector<int> stale_;                 // slots to look at anew
+  std::vector<char> is_stale_;             // by slot
+  std::vector<LocalCell> cells_along_[3];  // scratch
 };
 
 }  // namespace thalweg::bodies

@@ -53,11 +53,11 @@ namespace thalweg::bodies {
 // the force of every link is added at the height half a link from its fluid cell: entry h lies h half cells above the
 // block's lower face.
 template <typename Real>
-class LinkPass {
+class InterpolatedBounceBack {
 public:
-  LinkPass(lbm::Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box, const LinkOptions& options,
-           std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments = nullptr,
-           std::vector<FixedVec3>* by_height = nullptr);
+  InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
+                         const LinkOptions& options, std::vector<LinkBody>& bodies,
+                         std::vector<FixedTensor>* moments = nullptr, std::vector<FixedVec3>* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -67,11 +67,11 @@ private:
   // `covered` of all these have a body at x_ff.
   struct Piece {
     std::int32_t body;
-    int first, count, covered;
+    int first, count, narrow;
 
     int end() const { return first + count; }
     int filled_end() const { return first + padded(count); }
-    int covered_end() const { return first + covered; }
+    int narrow_end() const { return first + narrow; }
   };
   struct Batch {
     int size = 0, plane = 0;  // size: with the copies
@@ -79,9 +79,9 @@ private:
     Piece piece[capacity / links_at_a_time];
     std::int32_t body[capacity / links_at_a_time];  // of every links_at_a_time links
     bool leaks = false;                             // whether there is an enclosed cell
-    int covered_count = 0;
-    std::int32_t covered[capacity];  // the links whose x_ff a body covers, if they want to know of it
-    alignas(64) std::uint32_t place[capacity], tag[capacity];
+    int narrow_count = 0;
+    std::int32_t narrow[capacity];  // the links whose x_ff a body covers, if they want to know of it
+    alignas(64) std::uint32_t xy[capacity], tag[capacity];
     alignas(64) std::int32_t cell[capacity];  // index of x_f within its plane
     alignas(64) std::int32_t incident_at[capacity], second_at[capacity], reflected_at[capacity];  // LinkSlots
     alignas(64) Real distance[capacity], arm[3][capacity];
@@ -141,18 +141,18 @@ private:
   }
   const Real* excess() const { return has_rest_ ? values_.excess : values_.deviation; }
 
-  void append(Batch& batch, const LinkTable::Tile& tile, const LinkTable::Run& run, int from, int count) const;
+  void append(Batch& batch, const LinkTable::Tile& tile, const LinkTable::LinkRange& range, int from, int count) const;
   template <typename Rule>
   void prepare(Batch& batch) const;
   template <typename Rule>
-  void find_covered(Batch& batch) const;
+  void find_narrow(Batch& batch) const;
   template <typename Rule, bool with_moments>
   void finish(const Batch& batch);
   template <typename Rule>
   void gather(const Batch& batch);
-  void forget_second_of_covered(const Batch& batch);
-  void look_at_covered(const Batch& batch);
-  void look_upstream(const Batch& batch);
+  void clear_second_of_narrow(const Batch& batch);
+  void gather_narrow(const Batch& batch);
+  void gather_upstream(const Batch& batch);
   void subtract_rest(const Batch& batch);
   void find_leaks(const Batch& batch);
   template <typename Rule, bool with_moments>
@@ -169,7 +169,7 @@ private:
   std::vector<LinkBody>& bodies_;
   std::vector<FixedTensor>* moments_;  // null: not measured
   std::vector<FixedVec3>* by_height_;  // null: not measured
-  BlockPlace block_;
+  BlockFrame block_;
 
   LinkSlots slots_;
   Real* base_ = nullptr;

@@ -1,4 +1,4 @@
-#include "bodies/map/hidden_patches.hpp"
+#include "bodies/map/occluded_patches.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace thalweg::bodies {
 using lbm::CellMap;
 using lbm::D3Q19;
 
-HiddenPatches::HiddenPatches(const Decomposition& decomposition, const Block& block, const CellMap& cells)
+OccludedPatches::OccludedPatches(const Decomposition& decomposition, const Block& block, const CellMap& cells)
     : box_(decomposition.cell_box()), cells_(cells) {
   for (int a = 0; a < 3; ++a) {
     wall_below_[a] = !decomposition.periodic()[a] && block.lower[a] == 0;
@@ -15,7 +15,7 @@ HiddenPatches::HiddenPatches(const Decomposition& decomposition, const Block& bl
   }
 }
 
-void HiddenPatches::cell_changes(const Index3& local, std::int32_t now) {
+void OccludedPatches::cell_changes(const Index3& local, std::int32_t now) {
   const lbm::CellIndexing& indexing = cells_.indexing();
   const std::ptrdiff_t cell = indexing.index(local[0], local[1], local[2]);
   const Index3& n = indexing.size();
@@ -43,7 +43,7 @@ void HiddenPatches::cell_changes(const Index3& local, std::int32_t now) {
   }
 }
 
-void HiddenPatches::count(std::int32_t p, std::int32_t q, int direction, int lines) {
+void OccludedPatches::count(std::int32_t p, std::int32_t q, int direction, int lines) {
   Patch& patch = patches_[key(p, q)];
   const int weight = lines * (3 - D3Q19::length_squared(direction));
   for (std::size_t a = 0; a < 3; ++a) patch.sum[a] += weight * D3Q19::c[direction][a];
@@ -51,13 +51,13 @@ void HiddenPatches::count(std::int32_t p, std::int32_t q, int direction, int lin
   if (patch.lines == 0) patches_.erase(key(p, q));
 }
 
-Vec3 HiddenPatches::patch(std::int32_t p, std::int32_t q) const {
+Vec3 OccludedPatches::patch(std::int32_t p, std::int32_t q) const {
   const auto found = patches_.find(key(p, q));
   if (found == patches_.end()) return Vec3::Zero();
   return to_vec3(found->second);
 }
 
-std::vector<std::array<std::int64_t, 3>> HiddenPatches::by_solids(std::size_t slots, int solids) const {
+std::vector<std::array<std::int64_t, 3>> OccludedPatches::by_solids(std::size_t slots, int solids) const {
   std::vector<std::array<std::int64_t, 3>> sums(slots, std::array<std::int64_t, 3>{});
   for (const auto& [key, patch] : patches_) {
     const Pair pair = pair_of(key);
@@ -67,10 +67,10 @@ std::vector<std::array<std::int64_t, 3>> HiddenPatches::by_solids(std::size_t sl
   return sums;
 }
 
-Vec3 HiddenPatches::to_vec3(const Patch& patch) { return Vec3(patch.sum[0], patch.sum[1], patch.sum[2]) / 36.0; }
+Vec3 OccludedPatches::to_vec3(const Patch& patch) { return Vec3(patch.sum[0], patch.sum[1], patch.sum[2]) / 36.0; }
 
 // Out of p, towards q.
-Vec3 HiddenPatches::direction(const Pair& pair, const std::vector<LinkBody>& bodies) const {
+Vec3 OccludedPatches::direction(const Pair& pair, const std::vector<LinkBody>& bodies) const {
   if (pair.q >= 0)
     return box_.difference(bodies[static_cast<std::size_t>(pair.q)].centre,
                            bodies[static_cast<std::size_t>(pair.p)].centre);
@@ -82,7 +82,7 @@ Vec3 HiddenPatches::direction(const Pair& pair, const std::vector<LinkBody>& bod
 
 // Numbers are rounded before they are multiplied by the patch, so that the parts of a patch on several ranks add up to
 // the whole.
-void HiddenPatches::press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment) {
+void OccludedPatches::press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment) {
   const double line = 2.0 * excess / 36.0;
   const std::int64_t force = LatticeFixed::from(line);
   body.force +=
@@ -96,7 +96,7 @@ void HiddenPatches::press(const Patch& patch, const Vec3& arm, double excess, Li
 }
 
 // On a solid, along a line through the centre of the sphere.
-void HiddenPatches::press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const {
+void OccludedPatches::press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const {
   press(patch, Vec3::Zero(), excess, solid, nullptr);
   if (!solid.turns) return;
   const Vec3 arm = (2.0 * excess / 36.0) * box_.difference(sphere.centre, solid.centre);
@@ -107,17 +107,17 @@ void HiddenPatches::press_solid(const Patch& patch, double excess, const LinkBod
                    exact_sum(product(0, 1), -product(1, 0))};
 }
 
-Vec3 HiddenPatches::velocity_beside(const LinkBody& solid, const LinkBody& sphere) const {
+Vec3 OccludedPatches::velocity_beside(const LinkBody& solid, const LinkBody& sphere) const {
   return solid.velocity + solid.angular_velocity.cross(box_.difference(sphere.centre, solid.centre));
 }
 
-void HiddenPatches::give_mass(const Patch& patch, const Vec3& velocity, LinkBody& body) {
+void OccludedPatches::give_mass(const Patch& patch, const Vec3& velocity, LinkBody& body) {
   for (int a = 0; a < 3; ++a)
     body.mass = exact_sum(body.mass, -exact_product(LatticeFixed::from(6.0 / 36.0 * velocity[a]), patch.sum[a]));
 }
 
-void HiddenPatches::apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
-                          double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+void OccludedPatches::apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
+                            double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   for (const auto& [key, patch] : patches_) {
     const Pair pair = pair_of(key);
     const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);

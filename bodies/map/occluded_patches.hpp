@@ -31,9 +31,9 @@
 
 namespace thalweg::bodies {
 
-class HiddenPatches {
+class OccludedPatches {
 public:
-  HiddenPatches(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells);
+  OccludedPatches(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells);
 
   // To be called before the map gives a cell in memory (local coordinates) to `now`, a slot or CellMap::fluid.
   void cell_changes(const Index3& local, std::int32_t now);
@@ -41,7 +41,7 @@ public:
   // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
   // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given, but for what solids
   // hide, whose direction follows from the whole patch: by_solids(). surrounding: by
-  // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/link_pass.hpp).
+  // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/interpolated_bounce_back.hpp).
   // solids: so many slots, the first ones.
   void apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
              double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;

@@ -1,4 +1,4 @@
-#include "coupling/loads/momentum_book.hpp"
+#include "coupling/loads/momentum_budget.hpp"
 
 #include "core/geometry/symmetric_pairs.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
@@ -77,19 +77,19 @@ std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::F
 }  // namespace
 
 template <typename Real>
-MomentumBook book_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
-                     const std::vector<FixedVec3>& on_grains) {
-  MomentumBook book;
-  book.planes = planes_of(fluid, units);
-  book.on_grains = over_ranks(on_grains, fluid, units.force());
+MomentumBudget momentum_budget_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
+                                  const std::vector<FixedVec3>& on_grains) {
+  MomentumBudget budget;
+  budget.planes = planes_of(fluid, units);
+  budget.on_grains = over_ranks(on_grains, fluid, units.force());
   std::vector<FixedVec3> on_sides(on_grains.size());
-  book.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
-  book.on_sides = over_ranks(on_sides, fluid, units.force());
-  book.driving = fluid.parameters().force * (units.stress() / units.spacing);
-  return book;
+  budget.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
+  budget.on_sides = over_ranks(on_sides, fluid, units.force());
+  budget.driving = fluid.parameters().force * (units.stress() / units.spacing);
+  return budget;
 }
 
-template MomentumBook book_of(lbm::Fluid<float>&, const Units&, double, const std::vector<FixedVec3>&);
-template MomentumBook book_of(lbm::Fluid<double>&, const Units&, double, const std::vector<FixedVec3>&);
+template MomentumBudget momentum_budget_of(lbm::Fluid<float>&, const Units&, double, const std::vector<FixedVec3>&);
+template MomentumBudget momentum_budget_of(lbm::Fluid<double>&, const Units&, double, const std::vector<FixedVec3>&);
 
 }  // namespace thalweg::coupling

@@ -1,4 +1,4 @@
-#include "bodies/links/hidden_links.hpp"
+#include "bodies/links/occluded_links.hpp"
 
 #include <algorithm>
 
@@ -7,8 +7,8 @@ namespace thalweg::bodies {
 using lbm::CellMap;
 using lbm::D3Q19;
 
-HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
-                         const Hydrostatic& rest)
+OccludedLinks::OccludedLinks(const Decomposition& decomposition, const Block& block, const CellMap& cells,
+                             const Hydrostatic& rest)
     : decomposition_(decomposition),
       block_(block),
       local_cells_(decomposition, block),
@@ -16,13 +16,13 @@ HiddenLinks::HiddenLinks(const Decomposition& decomposition, const Block& block,
       rest_(rest),
       box_(decomposition.cell_box()) {}
 
-std::size_t HiddenLinks::count() const {
+std::size_t OccludedLinks::count() const {
   std::size_t total = 0;
   for (const std::vector<Link>& links : links_) total += links.size();
   return total;
 }
 
-void HiddenLinks::update(const BodyMap& map) {
+void OccludedLinks::update(const BodyMap& map) {
   if (rest_.none()) return;
   links_.resize(map.bodies().size());
   is_stale_.resize(map.bodies().size(), 0);
@@ -39,13 +39,13 @@ void HiddenLinks::update(const BodyMap& map) {
   stale_.clear();
 }
 
-void HiddenLinks::mark(std::int32_t slot) {
+void OccludedLinks::mark(std::int32_t slot) {
   if (slot == CellMap::fluid || is_stale_[static_cast<std::size_t>(slot)]) return;
   is_stale_[static_cast<std::size_t>(slot)] = 1;
   stale_.push_back(slot);
 }
 
-void HiddenLinks::mark_around(const Index3& local) {
+void OccludedLinks::mark_around(const Index3& local) {
   const Index3& n = cells_.indexing().size();
   for (int i = 1; i < D3Q19::directions; ++i) {
     Index3 at;
@@ -58,21 +58,21 @@ void HiddenLinks::mark_around(const Index3& local) {
   }
 }
 
-void HiddenLinks::rebuild(int slot, const std::vector<MappedBody>& grains) {
+void OccludedLinks::rebuild(int slot, const std::vector<MappedBody>& grains) {
   const MappedBody& grain = grains[static_cast<std::size_t>(slot)];
   links_[static_cast<std::size_t>(slot)].clear();
   if (grain.id < 0) return;
-  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, places_[a]);
-  for (const LocalCell& z : places_[2])
-    for (const LocalCell& y : places_[1])
-      for (const LocalCell& x : places_[0]) {
+  for (int a = 0; a < 3; ++a) local_cells_.along(a, grain.centre[a], grain.radius, grain.centre[a], 0, cells_along_[a]);
+  for (const LocalCell& z : cells_along_[2])
+    for (const LocalCell& y : cells_along_[1])
+      for (const LocalCell& x : cells_along_[0]) {
         const Index3 local{x.local, y.local, z.local};
         if (cells_.body(cells_.indexing().index(local[0], local[1], local[2])) == slot)
           find_at_cell(slot, local, grains);
       }
 }
 
-void HiddenLinks::find_at_cell(int slot, const Index3& local, const std::vector<MappedBody>& grains) {
+void OccludedLinks::find_at_cell(int slot, const Index3& local, const std::vector<MappedBody>& grains) {
   const GlobalId clump = grains[static_cast<std::size_t>(slot)].clump;
   const std::ptrdiff_t cell = cells_.indexing().index(local[0], local[1], local[2]);
   for (int i = 1; i < D3Q19::directions; ++i) {
@@ -91,7 +91,8 @@ void HiddenLinks::find_at_cell(int slot, const Index3& local, const std::vector<
   }
 }
 
-void HiddenLinks::add(const Link& link, const Vec3& from, double distance, LinkBody& body, FixedTensor* moments) const {
+void OccludedLinks::add(const Link& link, const Vec3& from, double distance, LinkBody& body,
+                        FixedTensor* moments) const {
   const Vec3 c = velocity_of(link.direction), arm = from + distance * c;
   const double weight = D3Q19::weight(link.direction), density = rest_.deviation(link.from + distance * c);
   const Vec3 momentum = (2.0 * weight * density) * c;
@@ -102,7 +103,7 @@ void HiddenLinks::add(const Link& link, const Vec3& from, double distance, LinkB
 
 // Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
 // those of a place a little apart, meets it where it is nearest to the centre.
-void HiddenLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+void OccludedLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   for (std::size_t slot = 0; slot < links_.size(); ++slot)
     for (const Link& link : links_[slot]) {
       const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);

@@ -25,21 +25,21 @@
 
 namespace thalweg::coupling {
 
-class MassAccount {
+class MassBudget {
 public:
-  enum Entry { links, covered, uncovered, corrections, entries };
+  enum Term { links, covered, uncovered, corrections, terms };
 
-  explicit MassAccount(MPI_Comm communicator) : communicator_(communicator) {}
+  explicit MassBudget(MPI_Comm communicator) : communicator_(communicator) {}
 
-  // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are booked by one rank; they
+  // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are recorded by one rank; they
   // may be larger than a LatticeFixed term.
-  void book(Entry entry, std::int64_t mass) { sums_[entry].add(mass); }
-  void book(Entry entry, double mass) { sums_[entry].add(WideSum::from(mass, LatticeFixed::bits)); }
+  void record(Term term, std::int64_t mass) { sums_[term].add(mass); }
+  void record(Term term, double mass) { sums_[term].add(WideSum::from(mass, LatticeFixed::bits)); }
 
-  // Since the start of the run, over all ranks, by Entry; all at once because a reduction is shared. Collective.
-  std::array<double, entries> totals() const;
+  // Since the start of the run, over all ranks, by Term; all at once because a reduction is shared. Collective.
+  std::array<double, terms> totals() const;
 
-  // Starts a new account, with the present excess and what grains taken over from another run owe, over all ranks.
+  // Starts a new budget, with the present excess and what grains taken over from another run owe, over all ranks.
   void open(double excess, double owed);
   double kept() const { return kept_; }  // excess and owed mass at the start of the run, which are to stay
 
@@ -50,11 +50,11 @@ public:
   void load(ArchiveReader& archive);
 
 private:
-  std::array<WideSum, entries> totals_exact() const;
+  std::array<WideSum, terms> totals_exact() const;
 
   MPI_Comm communicator_;
-  std::array<WideSum, entries> sums_{};  // this rank's
-  double kept_ = 0.0;                    // excess and owed mass
+  std::array<WideSum, terms> sums_{};  // this rank's
+  double kept_ = 0.0;                  // excess and owed mass
 };
 
 }  // namespace thalweg::coupling

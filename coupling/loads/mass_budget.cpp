@@ -1,4 +1,4 @@
-#include "coupling/loads/mass_account.hpp"
+#include "coupling/loads/mass_budget.hpp"
 
 #include "core/parallel/mpi_session.hpp"
 
@@ -12,39 +12,39 @@ namespace {
 
 constexpr int fraction_bits = 44;  // of LatticeFixed
 
-constexpr const char* names[MassAccount::entries] = {"links", "covered_cells", "uncovered_cells", "corrections"};
+constexpr const char* names[MassBudget::terms] = {"links", "covered_cells", "uncovered_cells", "corrections"};
 
 }  // namespace
 
 // What is owed was taken by links before.
-void MassAccount::open(double excess, double owed) {
+void MassBudget::open(double excess, double owed) {
   sums_ = {};
   kept_ = excess + owed;
-  if (rank_of(communicator_) == 0) book(links, -owed);
+  if (rank_of(communicator_) == 0) record(links, -owed);
 }
 
-std::array<WideSum, MassAccount::entries> MassAccount::totals_exact() const {
-  static_assert(sizeof(sums_) == 2 * entries * sizeof(std::int64_t));
-  constexpr int words = 2 * entries;
+std::array<WideSum, MassBudget::terms> MassBudget::totals_exact() const {
+  static_assert(sizeof(sums_) == 2 * terms * sizeof(std::int64_t));
+  constexpr int words = 2 * terms;
   const std::size_t ranks = static_cast<std::size_t>(size_of(communicator_));
-  std::vector<std::array<WideSum, entries>> all(ranks);
+  std::vector<std::array<WideSum, terms>> all(ranks);
   MPI_Allgather(sums_.data(), words, MPI_INT64_T, all.data(), words, MPI_INT64_T, communicator_);
-  std::array<WideSum, entries> totals{};
+  std::array<WideSum, terms> totals{};
   for (const auto& of_rank : all)
-    for (std::size_t k = 0; k < entries; ++k) totals[k].add(of_rank[k]);
+    for (std::size_t k = 0; k < terms; ++k) totals[k].add(of_rank[k]);
   return totals;
 }
 
-std::array<double, MassAccount::entries> MassAccount::totals() const {
-  std::array<double, entries> totals{};
-  const std::array<WideSum, entries> exact = totals_exact();
-  for (std::size_t k = 0; k < entries; ++k) totals[k] = exact[k].to_double(fraction_bits);
+std::array<double, MassBudget::terms> MassBudget::totals() const {
+  std::array<double, terms> totals{};
+  const std::array<WideSum, terms> exact = totals_exact();
+  for (std::size_t k = 0; k < terms; ++k) totals[k] = exact[k].to_double(fraction_bits);
   return totals;
 }
 
-std::vector<Diagnostic> MassAccount::diagnostics(double excess, double owed, const Units& units) const {
+std::vector<Diagnostic> MassBudget::diagnostics(double excess, double owed, const Units& units) const {
   const double cell = units.density * std::pow(units.spacing, 3);
-  const std::array<double, entries> t = totals();
+  const std::array<double, terms> t = totals();
   const double by_walls = excess - kept_ - t[links] - t[covered] - t[uncovered] - t[corrections];
   return {{"excess_mass", "kg", cell * excess},
           {"mass_by_links", "kg", cell * t[links]},
@@ -55,19 +55,19 @@ std::vector<Diagnostic> MassAccount::diagnostics(double excess, double owed, con
           {"mass_owed", "kg", cell * owed}};
 }
 
-void MassAccount::save(ArchiveWriter& archive) const {
+void MassBudget::save(ArchiveWriter& archive) const {
   archive.attribute("mass/start", kept_);
-  const std::array<WideSum, entries> totals = totals_exact();
-  for (std::size_t k = 0; k < entries; ++k) {
+  const std::array<WideSum, terms> totals = totals_exact();
+  for (std::size_t k = 0; k < terms; ++k) {
     archive.attribute(fmt::format("mass/{}_high", names[k]), totals[k].high);
     archive.attribute(fmt::format("mass/{}_low", names[k]), totals[k].low);
   }
 }
 
 // The whole sum is the first rank's from here on.
-void MassAccount::load(ArchiveReader& archive) {
+void MassBudget::load(ArchiveReader& archive) {
   kept_ = archive.real_attribute("mass/start");
-  for (std::size_t k = 0; k < entries; ++k) {
+  for (std::size_t k = 0; k < terms; ++k) {
     const WideSum total{archive.integer_attribute(fmt::format("mass/{}_high", names[k])),
                         archive.integer_attribute(fmt::format("mass/{}_low", names[k]))};
     sums_[k] = rank_of(communicator_) == 0 ? total : WideSum{};
