@@ -63,10 +63,10 @@ template <bool wraps, typename Real>
   for (int first = 0; first < count; first += links_at_a_time) {
     const int end = first + links_at_a_time;
     for (int k = first; k < end; ++k) {
-      const int tag = static_cast<int>(tags[k]), xy = static_cast<int>(xy[k]);
+      const int tag = static_cast<int>(tags[k]), word = static_cast<int>(xy[k]);
       const int cx = LinkTag::velocity(tag, 0), cy = LinkTag::velocity(tag, 1), cz = LinkTag::velocity(tag, 2);
-      const int x = static_cast<int>(xy & static_cast<int>(LinkXY::x_mask)),
-                y = xy >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask);
+      const int x = static_cast<int>(word & static_cast<int>(LinkXY::x_mask)),
+                y = word >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask);
       const Real dx = Real(nearest(x + from_x + cx, half_x, period_x) - cx) + rest[0];
       const Real dy = Real(nearest(y + from_y + cy, half_y, period_y) - cy) + rest[1];
       const Real dz = Real(nearest(from_z + cz, half_z, period_z) - cz) + rest[2];

@@ -56,9 +56,9 @@ public:
     constexpr auto unaligned = std::experimental::element_aligned;
     const int start = (z + 1) * plane_, corner = first_ - plane_;
     for (int k = 0; k < count; k += static_cast<int>(Pack::size())) {
-      const Ints xy(xy + k, unaligned), tag(tags + k, unaligned);
-      const Ints cell = corner + (xy >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask)) * row_ +
-                        (xy & static_cast<int>(LinkXY::x_mask));
+      const Ints word(xy + k, unaligned), tag(tags + k, unaligned);
+      const Ints cell = corner + (word >> LinkXY::y_shift & static_cast<int>(LinkXY::x_mask)) * row_ +
+                        (word & static_cast<int>(LinkXY::x_mask));
       const Ints i = tag & static_cast<int>(LinkTag::direction_mask), opposite = ((i - 1) ^ 1) + 1;
       const Ints along = along_link(tag);
       // Planes count from the middle one: products beyond 9 strides would not fit into 32 bits.

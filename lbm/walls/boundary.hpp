@@ -31,12 +31,12 @@ enum class Reflection {
 
 // Properties of a type of face, all in one place.
 struct FaceTraits {
-  int precedence = 3;                    // at an edge of two faces, the rule of the higher one applies
-  bool is_open = false;                  // lets fluid in or out
-  std::optional<Reflection> reflection;  // none: other populations enter than those that came
-  bool has_velocity = false;             // FaceCondition::velocity
-  bool drags = false;                    // exerts shear on a flow along it
-  bool is_smooth = false;                // carries a boundary layer that follows the law of the wall
+  int precedence = 3;                                   // at an edge of two faces, the rule of the higher one applies
+  bool is_open = false;                                 // lets fluid in or out
+  std::optional<Reflection> reflection = std::nullopt;  // none: other populations enter than those that came
+  bool has_velocity = false;                            // FaceCondition::velocity
+  bool drags = false;                                   // exerts shear on a flow along it
+  bool is_smooth = false;                               // carries a boundary layer that follows the law of the wall
 
   constexpr bool slips() const { return reflection == Reflection::mixed; }
 };
