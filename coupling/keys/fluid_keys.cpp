@@ -58,23 +58,12 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
       !fluid.smagorinsky_constant || !fluid.subgrid_model || *fluid.subgrid_model == lbm::SubgridModel::smagorinsky,
       "smagorinsky_constant", "only subgrid_model: smagorinsky has this constant; remove one of the two");
   visit.real("time_step", fluid.time_step,
-             {.unit = "s", .meaning = "of the fluid; or give the two velocities below", .above = 0.0, .example = 2e-5});
-  visit.real("maximum_lattice_velocity", fluid.maximum_lattice_velocity,
-             {.unit = "cells/step",
-              .meaning = "with expected_velocity, in place of time_step: the step in which the "
-                         "expected velocity covers this many cells",
+             {.unit = "s",
+              .meaning = "of the fluid; default: as long as its speed and viscosity allow (thalweg check prints it)",
               .above = 0.0,
-              .at_most = 0.173,
-              .example = 0.05});
-  visit.real("expected_velocity", fluid.expected_velocity,
-             {.unit = "m/s", .meaning = "the largest velocity expected in the fluid", .above = 0.0, .example = 0.5});
-  visit.require(!(fluid.time_step && fluid.maximum_lattice_velocity), "time_step",
-                "the step is given twice; give either time_step or maximum_lattice_velocity with expected_velocity");
-  visit.require(fluid.time_step || fluid.maximum_lattice_velocity, "time_step",
-                "the step is missing; give time_step in s, for example 2e-05, or maximum_lattice_velocity with "
-                "expected_velocity");
-  visit.require(!fluid.maximum_lattice_velocity || fluid.expected_velocity, "expected_velocity",
-                "maximum_lattice_velocity needs it; give the largest velocity expected in m/s, for example 0.5");
+              .example = 2e-5});
+  for (const char* removed : {"maximum_lattice_velocity", "expected_velocity"})
+    visit.not_here(removed, "the step follows from the flow by default; remove the key, or give time_step in s");
   visit.choice("collision", fluid.collision,
                {.meaning = "collision operator",
                 .removed = {{"regularised",

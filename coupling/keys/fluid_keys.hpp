@@ -24,9 +24,7 @@ struct FluidKeys {
   double kinematic_viscosity = 0.0;                // m^2/s
   std::optional<lbm::SubgridModel> subgrid_model;  // read as smagorinsky with its constant, else qr
   std::optional<double> smagorinsky_constant;      // 1
-  std::optional<double> time_step;                 // s; else from the two velocities
-  std::optional<double> maximum_lattice_velocity;  // cells per step
-  std::optional<double> expected_velocity;         // m/s, the largest
+  std::optional<double> time_step;                 // s; read as the longest that suits the flow
   lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
   std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else CollisionTraits::usual_magic_parameter
   // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,

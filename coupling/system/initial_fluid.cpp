@@ -17,20 +17,20 @@ static void describe(SectionVisitor& visit, PerturbationKeys& perturbation) {
 static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
   visit.real("bed_height", profile.bed_height,
              {.unit = "m",
-              .meaning = "above the bottom; the fluid below is at rest",
-              .required = true,
+              .meaning = "above the bottom; the fluid below is at rest; default: that of the settled bed",
               .at_least = 0.0,
               .example = 0.06});
-  visit.real("shear_velocity", profile.shear_velocity,
-             {.unit = "m/s",
-              .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness)",
-              .required = true,
-              .above = 0.0,
-              .example = 0.08});
+  visit.real(
+      "shear_velocity", profile.shear_velocity,
+      {.unit = "m/s",
+       .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness); default: that of the flow that "
+                  "develops",
+       .above = 0.0,
+       .example = 0.08});
   visit.real("roughness", profile.roughness,
              {.unit = "m",
-              .meaning = "height above the bed at which the velocity is zero",
-              .required = true,
+              .meaning = "height above the bed at which the velocity is zero; default: a fifteenth of the largest "
+                         "diameter, or that of a smooth floor",
               .above = 0.0,
               .example = 3.3e-4});
   visit.section("perturbation", profile.perturbation,
@@ -62,8 +62,8 @@ using InitialFluid = std::function<FluidInitialState(const Vec3&)>;
 
 InitialFluid with_perturbation(const LogProfileKeys& profile, const InitialFluid& calm, const Index3& cells,
                                const std::array<bool, 3>& periodic, double spacing) {
-  const double strength = profile.shear_velocity * profile.perturbation->amplitude;
-  const lbm::NoiseBox box{cells, periodic, profile.bed_height / spacing};
+  const double strength = *profile.shear_velocity * profile.perturbation->amplitude;
+  const lbm::NoiseBox box{cells, periodic, *profile.bed_height / spacing};
   const lbm::SolenoidalNoise noise(box, static_cast<std::uint64_t>(profile.perturbation->seed));
   return [calm, noise, strength, spacing](const Vec3& position) {
     FluidInitialState state = calm(position);
@@ -87,10 +87,10 @@ InitialFluid initial_fluid(const InitialFluidKeys& fluid, const Index3& cells, c
   if (!fluid.log_profile) return {};
   const InitialFluid calm = [profile = *fluid.log_profile](const Vec3& position) {
     constexpr double von_karman = 0.41;
-    const double height = position.z() - profile.bed_height;
+    const double height = position.z() - *profile.bed_height;
     FluidInitialState state;
-    if (height > profile.roughness)
-      state.velocity.x() = profile.shear_velocity / von_karman * std::log(height / profile.roughness);
+    if (height > *profile.roughness)
+      state.velocity.x() = *profile.shear_velocity / von_karman * std::log(height / *profile.roughness);
     return state;
   };
   return fluid.log_profile->perturbation ? with_perturbation(*fluid.log_profile, calm, cells, periodic, spacing) : calm;

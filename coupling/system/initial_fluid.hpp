@@ -19,11 +19,12 @@ struct PerturbationKeys {
   bool operator==(const PerturbationKeys&) const = default;
 };
 
-// u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below.
+// u(z) = (shear_velocity / 0.41) ln((z - bed_height) / roughness) along x above the bed, zero below. A case may leave
+// out any of the three; what reads it fills them in before initial_fluid() is called.
 struct LogProfileKeys {
-  double bed_height = 0.0;      // m above the bottom
-  double shear_velocity = 0.0;  // m/s
-  double roughness = 0.0;       // m, the height where the velocity is zero (for grains about d/30)
+  std::optional<double> bed_height;      // m above the bottom
+  std::optional<double> shear_velocity;  // m/s
+  std::optional<double> roughness;       // m, the height where the velocity is zero
   std::optional<PerturbationKeys> perturbation;
   bool operator==(const LogProfileKeys&) const = default;
 };

@@ -60,10 +60,7 @@ std::array<bool, 3> periodic_axes(const DomainCase& domain) {
   return {periodic(x_low), periodic(y_low), periodic(bottom)};
 }
 
-double fluid_time_step(const Case& c) {
-  if (c.fluid.time_step) return *c.fluid.time_step;
-  return *c.fluid.maximum_lattice_velocity * c.domain.spacing / *c.fluid.expected_velocity;
-}
+double fluid_time_step(const Case& c) { return *c.fluid.time_step; }
 
 std::int64_t grain_steps(const Case& c) {
   constexpr std::int64_t dry_steps = 50;

@@ -53,6 +53,13 @@ struct GravityCase {
   bool operator==(const GravityCase&) const = default;
 };
 
+// The flow over the bed that the grains make, in place of the slope, of the height of the box, or of both.
+struct FlowCase {
+  std::optional<double> shields_number;  // of the reference grain; between side walls by the hydraulic radius
+  std::optional<double> depth;           // m, of the water above the settled bed
+  bool operator==(const FlowCase&) const = default;
+};
+
 struct SphereCase {
   Vec3 centre = Vec3::Zero();  // m
   double radius = 0.0;         // m
@@ -144,10 +151,15 @@ struct DisksCase {
 };
 
 // What a case leaves open and what follows from its other keys, so that it has to follow again where they change
-// (contact_stiffness.hpp). It does not make two cases differ.
+// (estimate/filled_in.hpp). It does not make two cases differ.
 struct FilledIn {
   bool stiffness = false, tangential_stiffness = false;  // of the section contact
   bool grain_steps = false;
+  bool time_step = false;  // of the fluid
+  struct {
+    bool bed_height = false, shear_velocity = false, roughness = false;
+  } profile;           // initial.fluid.log_profile
+  std::string flow;    // what the section flow has set, in words; empty: there is none
   std::string preset;  // what a preset has set, in words; empty: there is none
   bool operator==(const FilledIn&) const { return true; }
 };
@@ -158,6 +170,7 @@ struct Case {
   DomainCase domain;          // of a column: what follows from its sections
   coupling::FluidKeys fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
+  std::optional<FlowCase> flow;  // only while the case is read: it becomes gravity.slope and domain.size
   std::optional<DisksCase> disks;
   std::vector<beds::Population> grains;
   std::vector<beds::WallKeys> walls;  // of dry grains, besides the faces
@@ -187,7 +200,7 @@ Index3 cells_of(const DomainCase& domain);  // size over spacing
 // within a fifth of it, the largest whole fraction of the present spacing.
 double spacing_below(const DomainCase& domain, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
-double fluid_time_step(const Case& c);            // s; given, or from the lattice velocity
+double fluid_time_step(const Case& c);            // s
 std::int64_t grain_steps(const Case& c);          // of a step of the fluid; of dry grains, of one step_time()
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
 double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one

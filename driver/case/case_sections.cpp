@@ -46,6 +46,21 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
        .only_if = {with_fluid, "a run without fluid has only one kind of gravity; remove the key"}});
 }
 
+static void describe(SectionVisitor& visit, FlowCase& flow) {
+  visit.real(
+      "shields_number", flow.shields_number,
+      {.meaning = "of the reference grain, with the settled bed's depth or, between side walls, hydraulic radius; "
+                  "gives gravity.slope, or with a slope the depth",
+       .above = 0.0,
+       .example = 0.05});
+  visit.real("depth", flow.depth,
+             {.unit = "m",
+              .meaning = "of the water above the settled bed; gives the height of the box, where domain.size has only "
+                         "two numbers",
+              .above = 0.0,
+              .example = 0.03});
+}
+
 static void describe_sources(SectionVisitor& visit, InitialFromCase& from, const OnlyIf& of_fluid, bool with_grains) {
   visit.text("run", from.run,
              {.meaning = "run folder or checkpoint, relative to this file, of which fields are taken",
@@ -239,6 +254,10 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.section("fluid", c.fluid, {.meaning = "properties of the fluid", .required = true, .only_if = of_fluid});
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
+  visit.section("flow", c.flow,
+                {.meaning = "the flow over the bed that the grains make, in place of numbers that follow from it",
+                 .only_if = {c.system == SystemKind::resolved,
+                             "only system: resolved has a bed under water; remove the section"}});
   visit.section("disks", c.disks,
                 {.meaning = "two dimensions: the grains are disks that move in the x-z plane",
                  .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});

@@ -15,11 +15,6 @@ namespace {
 
 constexpr double tangential_share = 2.0 / 7.0;
 
-// Where it is missing, check_case() says so.
-bool has_step(const Case& c) {
-  return has_fluid(c) && (c.fluid.time_step || (c.fluid.expected_velocity && c.fluid.maximum_lattice_velocity));
-}
-
 // Indices of the free populations without a normal stiffness of their own; of all free ones where each has one.
 std::vector<std::size_t> populations_of_common_stiffness(const Case& c) {
   const std::vector<std::size_t> free = free_populations(c);
@@ -49,7 +44,7 @@ double stiffness_by(const Case& c, const Duration& duration) {
 double stiffness_of(const Case& c) {
   const std::optional<dem::ContactDuration>& given = c.contact.given.duration;
   const bool in_steps = given ? given->fluid_steps.has_value() : c.system == SystemKind::resolved;
-  if (c.grains.empty() || (!given && !in_steps) || (in_steps && !has_step(c)))
+  if (c.grains.empty() || (!given && !in_steps) || (in_steps && !has_fluid(c)))
     return beds::ContactKeys::default_stiffness;
   if (given) {
     const double duration = in_steps ? *given->fluid_steps * fluid_time_step(c) : *given->seconds;
@@ -110,7 +105,7 @@ void fill_in_contacts(Case& c) {
                                          ? beds::ContactKeys::default_tangential_stiffness
                                          : tangential_share * contact.normal_stiffness;
   }
-  if (c.filled_in.grain_steps) c.coupling.grain_steps_per_fluid_step = has_step(c) ? sub_steps_needed(c) : 1;
+  if (c.filled_in.grain_steps) c.coupling.grain_steps_per_fluid_step = has_fluid(c) ? sub_steps_needed(c) : 1;
 }
 
 Case with_stiffnesses(Case c) {

@@ -15,6 +15,11 @@ struct SlowDrag {
 };
 SlowDrag slow_drag_error(double cells_per_diameter, bool cli);
 
+// Relative error of the drag on a sphere alone in a stream with the defaults for water, Reynolds numbers 300 to 3000
+// (benchmarks/validation/sphere_drag_curve, towed), linear in the logarithms of both, constant beyond the ends of the
+// Reynolds numbers and with the square of the resolution beyond those of the cells. Positive: too large.
+double stream_drag_error(double cells_per_diameter, double reynolds);
+
 // What a case may expect, in words: of its smallest grains at the Reynolds number of their fall, or of the flow where
 // none fall. Empty without grains in a fluid.
 std::string drag_text(const Case& c);

@@ -45,7 +45,7 @@ Channel channel_of(const Case& c) {
   channel.depth = c.domain.size.z() - settled_height(c);
   channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
   channel.half_width = walls == 0 ? infinite : width / walls;
-  channel.roughness = largest_diameter(c) / 15.0;
+  channel.roughness = largest_diameter(c) / roughness_a_diameter;
   channel.viscosity = c.fluid.kinematic_viscosity;
   channel.radius = surfaces > 0 ? hydraulic_radius(c, channel.reach) : walls > 0 ? width / walls : channel.depth;
   return channel;
@@ -72,14 +72,18 @@ void consider(FlowEstimate& flow, double speed, FlowCause cause) {
   flow.cause = cause;
 }
 
+bool is_complete(const coupling::LogProfileKeys& profile) {
+  return profile.bed_height && profile.shear_velocity && profile.roughness;
+}
+
 void consider_start(const Case& c, FlowEstimate& flow) {
   const coupling::InitialFluidKeys& start = c.initial.fluid;
   if (start.uniform) consider(flow, start.uniform->norm(), FlowCause::initial_fluid);
   if (start.linear_profile) consider(flow, start.linear_profile->velocity.norm(), FlowCause::initial_fluid);
-  if (!start.log_profile) return;
-  const double height = (c.domain.size.z() - start.log_profile->bed_height) / start.log_profile->roughness;
+  if (!start.log_profile || !is_complete(*start.log_profile)) return;
+  const double height = (c.domain.size.z() - *start.log_profile->bed_height) / *start.log_profile->roughness;
   if (height > 1.0)
-    consider(flow, start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
+    consider(flow, *start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
 }
 
 // In the time of the run a slope adds no more than g_x times that time to the speed of the start.

@@ -27,6 +27,8 @@
 
 namespace thalweg::driver {
 
+inline constexpr double roughness_a_diameter = 15.0;  // d/z_0
+
 enum class FlowCause {
   none,
   slope,

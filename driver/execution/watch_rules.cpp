@@ -142,8 +142,8 @@ double fall_speed(const Case& c) {
 
 double expected_flow_speed(const Case& c) {
   if (!has_fluid(c)) return 0.0;
-  double speed = std::max({estimated_velocity(c), c.fluid.expected_velocity.value_or(0.0),
-                           c.fluid.mean_velocity ? std::abs(c.fluid.mean_velocity->velocity) : 0.0});
+  double speed =
+      std::max(estimated_velocity(c), c.fluid.mean_velocity ? std::abs(c.fluid.mean_velocity->velocity) : 0.0);
   if (c.initial.fluid.uniform) speed = std::max(speed, c.initial.fluid.uniform->norm());
   if (c.initial.fluid.linear_profile) speed = std::max(speed, c.initial.fluid.linear_profile->velocity.norm());
   return speed;

@@ -6,7 +6,9 @@
 #include "driver/case/preset.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
+#include "driver/estimate/filled_in.hpp"
 #include "driver/input/case_checks.hpp"
+#include "driver/input/derived_flow.hpp"
 #include "io/text/section_reader.hpp"
 #include "io/text/section_writer.hpp"
 #include "io/text/yaml_document.hpp"
@@ -93,6 +95,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
                MPI_Comm communicator) {
   const Ranks ranks(communicator);
   io::YamlDocument document(path, overrides, ranks);
+  const DerivedFlow flow = derived_flow(document, overrides, known, ranks);
+  if (!flow.overrides.empty()) document = io::YamlDocument(path, flow.overrides, ranks);
   if (document.find("case") && !document.find("system"))
     throw InputError(fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(),
                                  shell_word(path.string())));
@@ -100,6 +104,8 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   Case c;
   io::read_document(document, c);
   c.filled_in.preset = preset;
+  c.filled_in.flow = flow.text;
+  c.flow.reset();
   if (c.system == SystemKind::continuum) {
     check_column(c, document);
     fill_in_column(c);
@@ -109,13 +115,13 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   if (has_fluid(c) && !c.fluid.bulk_relaxation_time) c.fluid.bulk_relaxation_time = bulk_relaxation_time_for(c);
   if (has_grains(c.system)) {
     check_box(c, document);
-    complete_contacts(c);
   }
-  if (!has_fluid(c) && !c.run.time_step)
-    c.run.time_step = std::min(shortest_contact(c) / steps_per_contact, longest_contact_step(c));
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
     if (*source && !(*source)->empty()) *source = document.path_beside(**source, "initial.from");
   fill_in_surfaces(c, document, ranks);
+  if (c.system != SystemKind::continuum) complete(c);
+  if (!has_fluid(c) && !c.run.time_step)
+    c.run.time_step = std::min(shortest_contact(c) / steps_per_contact, longest_contact_step(c));
   check_case(c, document);
   return c;
 }

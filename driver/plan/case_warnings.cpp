@@ -6,6 +6,7 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
+#include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/stability.hpp"
 #include "driver/input/run_facts.hpp"
@@ -25,36 +26,25 @@ namespace thalweg::driver {
 namespace {
 
 // The largest velocity expected, cells a step.
-double expected_lattice_velocity(const Case& c) {
-  return c.fluid.expected_velocity.value_or(flow_estimate(c).speed) / units_of(c).velocity();
-}
+double expected_lattice_velocity(const Case& c) { return flow_estimate(c).speed / units_of(c).velocity(); }
 
 Warnings fast_flow(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   const double lattice_velocity = flow.speed / units_of(c).velocity();
-  // The estimate is an upper one: it has to contradict what the user expects, by a quarter.
-  const double expected = c.fluid.expected_velocity.value_or(0.0);
-  if (!(lattice_velocity > 0.1) || flow.speed < 1.25 * expected) return {};
-  const Change remedy = c.fluid.time_step
-                            ? fluid_step_change(c, 0.1 * c.domain.spacing / flow.speed, 2, Rounding::down)
-                            : number_change("fluid.expected_velocity", flow.speed, 2, Rounding::up,
-                                            [](Case& other, double speed) { other.fluid.expected_velocity = speed; });
-  return {
-      {fmt::format(
-           "The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step{}; results are accurate below 0.1 "
-           "and the limit is 0.173",
-           flow.speed, words_of(flow.cause), lattice_velocity,
-           expected > 0.0 ? fmt::format(" and {:.2g} times fluid.expected_velocity", flow.speed / expected)
-                          : std::string()),
-       {{{remedy}, {}}},
-       "a shorter step with finer cells"}};
+  if (!(lattice_velocity > accurate_lattice_velocity)) return {};
+  return {{fmt::format("The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step; results are accurate "
+                       "below {:g} and the limit is 0.173",
+                       flow.speed, words_of(flow.cause), lattice_velocity, accurate_lattice_velocity),
+           {{{fluid_step_change(accurate_lattice_velocity * c.domain.spacing / flow.speed, 2, Rounding::down)}, {}}},
+           "a shorter step with finer cells"}};
 }
 
 Warnings compression(const Case& c) {
   const double compression =
       3.0 * std::abs(gravity_vector(c.gravity).z()) / units_of(c).acceleration() * c.domain.size[2] / c.domain.spacing;
-  if (c.gravity.mode != GravityMode::full || !(compression > 0.05)) return {};
-  const Change step = fluid_step_change(c, fluid_time_step(c) * std::sqrt(0.05 / compression), 2, Rounding::down);
+  if (c.gravity.mode != GravityMode::full || !(compression > largest_compression)) return {};
+  const Change step =
+      fluid_step_change(fluid_time_step(c) * std::sqrt(largest_compression / compression), 2, Rounding::down);
   const Change mode =
       word_change("gravity.mode", "reduced", [](Case& other) { other.gravity.mode = GravityMode::reduced; });
   return {{fmt::format("The weight of the fluid compresses it by {:.2g} % from top to bottom", 100.0 * compression),
@@ -78,7 +68,7 @@ Change trt_change() { return collision_change("trt", lbm::CollisionModel::trt); 
 
 // Of the relaxation time over 1/2, by the step.
 Change excess_change(const Case& c, double excess, Rounding rounding) {
-  return fluid_step_change(c, fluid_time_step(c) * excess / (relaxation_time(c) - 0.5), 2, rounding);
+  return fluid_step_change(fluid_time_step(c) * excess / (relaxation_time(c) - 0.5), 2, rounding);
 }
 
 // From here on both trt and bgk are stable and accurate without a subgrid model.
@@ -138,9 +128,8 @@ Remedy finer_cells_and_step(const Case& c, double excess) {
   const double finer = margin * c.domain.spacing * (relaxation_time(c) - 0.5) / excess;
   const Change spacing = spacing_change(c, std::min(finer, c.domain.spacing));
   const Case after = changed(c, {spacing});
-  if (!c.fluid.time_step) return {spacing};  // the step follows
-  return {spacing,
-          fluid_step_change(after, fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down)};
+  if (c.filled_in.time_step) return {spacing};  // the step follows
+  return {spacing, fluid_step_change(fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down)};
 }
 
 Warnings unmapped_relaxation(const Case& c) {
@@ -237,13 +226,13 @@ Warnings coarse_cells(const Case& c) {
   const Change finer = spacing_change(c, smallest_diameter(c) / fewest);
   const Case after = changed(c, {finer});
   const Change step =
-      fluid_step_change(after, fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down);
+      fluid_step_change(fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down);
   const Change accepted =
       number_change("coupling.fewest_cells_per_diameter", std::floor(10.0 * cells) / 10.0, 6, Rounding::down,
                     [](Case& other, double to) { other.coupling.fewest_cells_per_diameter = to; });
   return {{fmt::format("The smallest grain is only {:.2g} cells across{}; its drag is {} (docs/accuracy.md)", cells,
                        cells < barely_resolved ? ", which does not resolve the flow around it" : "", drag_text(c)),
-           {{c.fluid.time_step ? Remedy{finer, step} : Remedy{finer}, {}}, {{accepted}, "accept it with "}},
+           {{c.filled_in.time_step ? Remedy{finer} : Remedy{finer, step}, {}}, {{accepted}, "accept it with "}},
            "finer cells"}};
 }
 

@@ -41,15 +41,14 @@ Remedy suitable_contact(const Case& c) {
   const double least = stiffness_margin * least_factor(c), most = most_factor(c);
   if (has_default_duration(c) && most < 1.0) {  // it is as short as overlaps ask for
     const ReboundTimes times = *rebound_times(c);
-    return {fluid_step_change(c, fluid_time_step(c) * times.contact / times.around, 3, Rounding::down)};
+    return {fluid_step_change(fluid_time_step(c) * times.contact / times.around, 3, Rounding::down)};
   }
   if (least <= most)
     return most < 1.0 ? stiffness_changes(c, most, 4, Rounding::down) : stiffness_changes(c, least, 2, Rounding::up);
   const Remedy contact = stiffness_changes(c, least, 3, Rounding::up);
   const Case after = changed(c, contact);
   const ReboundTimes times = *rebound_times(after);
-  return joined(contact,
-                {fluid_step_change(after, fluid_time_step(after) * times.contact / times.around, 3, Rounding::down)});
+  return joined(contact, {fluid_step_change(fluid_time_step(after) * times.contact / times.around, 3, Rounding::down)});
 }
 
 using Material = std::function<beds::MaterialKeys&(Case&)>;

@@ -27,9 +27,6 @@ void add_speed(const Case& c, const FlowEstimate& flow, Lines& lines) {
                                 on_lattice(c, flow.speed)));
   else
     lines.push_back("flow       " + std::string(words_of(FlowCause::none)));
-  if (c.fluid.expected_velocity)
-    lines.push_back(fmt::format("expected   {:.3g} m/s by the case: {}", *c.fluid.expected_velocity,
-                                on_lattice(c, *c.fluid.expected_velocity)));
 }
 
 // The times by which a run is to be planned.

@@ -49,13 +49,10 @@ bool starts_developed(const Case& c) {
 std::vector<Advice> developed_start(const Case& c, const FlowEstimate& flow) {
   const bool suits = flow.drive == FlowCause::slope || flow.drive == FlowCause::mean_velocity;
   if (!suits || flow.laminar || c.domain.faces[top].drags() || c.initial.fluid.count() > 0) return {};
-  const double roughness =
-      c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * flow.friction_velocity) : largest_diameter(c) / 15.0;
-  const coupling::LogProfileKeys profile{settled_height(c), flow.friction_velocity, roughness, std::nullopt};
-  const std::string text = fmt::format("{{bed_height: {:.3g}, shear_velocity: {:.3g}, roughness: {:.2g}}}",
-                                       profile.bed_height, profile.shear_velocity, profile.roughness);
-  const Change start = word_change("initial.fluid.log_profile", text,
-                                   [profile](Case& other) { other.initial.fluid.log_profile = profile; });
+  const Change start = word_change("initial.fluid.log_profile", "{}", [](Case& other) {
+    other.initial.fluid.log_profile.emplace();
+    other.filled_in.profile = {true, true, true};
+  });
   return {{{start}, "begin with a developed flow, "}};
 }
 
@@ -81,12 +78,14 @@ Warnings short_run(const Case& c) {
 Warnings other_start(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
-  const double given = c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
+  const double given = *c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
   constexpr double meant_to_be_slow = 0.25;  // in a run that is too short for the flow anyway
   if ((flow.still_gaining && ratio < meant_to_be_slow) || (ratio >= 0.8 && ratio <= 1.25)) return {};
   const Change start =
-      exact_change("initial.fluid.log_profile.shear_velocity", flow.friction_velocity, 3,
-                   [](Case& other, double to) { other.initial.fluid.log_profile->shear_velocity = to; });
+      exact_change("initial.fluid.log_profile.shear_velocity", flow.friction_velocity, 3, [](Case& other, double to) {
+        other.initial.fluid.log_profile->shear_velocity = to;
+        other.filled_in.profile.shear_velocity = false;
+      });
   return {{fmt::format("The flow starts with a shear velocity of {:.3g} m/s and is driven ({}) towards {:.3g} m/s",
                        given, words_of(flow.drive), flow.friction_velocity),
            {{{start}, {}}},

@@ -1,7 +1,7 @@
 #include "driver/plan/remedy.hpp"
 
 #include "driver/case/limit_text.hpp"
-#include "driver/estimate/contact_stiffness.hpp"
+#include "driver/estimate/filled_in.hpp"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ std::string text_of(const Remedy& remedy) {
 
 Case changed(Case c, const Remedy& remedy) {
   for (const Change& change : remedy) change.apply(c);
-  fill_in_contacts(c);
+  fill_in(c);
   return c;
 }
 
@@ -63,12 +63,11 @@ Change word_change(std::string key, std::string word, std::function<void(Case&)>
   return {std::move(key), std::move(word), std::move(apply)};
 }
 
-Change fluid_step_change(const Case& c, double limit, int digits, Rounding rounding) {
-  if (c.fluid.time_step)
-    return number_change("fluid.time_step", limit, digits, rounding,
-                         [](Case& other, double step) { other.fluid.time_step = step; });
-  return number_change("fluid.maximum_lattice_velocity", limit * *c.fluid.expected_velocity / c.domain.spacing, digits,
-                       rounding, [](Case& other, double velocity) { other.fluid.maximum_lattice_velocity = velocity; });
+Change fluid_step_change(double limit, int digits, Rounding rounding) {
+  return number_change("fluid.time_step", limit, digits, rounding, [](Case& other, double step) {
+    other.fluid.time_step = step;
+    other.filled_in.time_step = false;
+  });
 }
 
 Change spacing_change(const Case& c, double most) {

@@ -22,7 +22,7 @@ using Remedy = std::vector<Change>;
 // "a: 1", "a: 1 and b: 2", "a: 1, b: 2 and c: 3".
 std::string text_of(const Remedy& remedy);
 
-// With what the case leaves open filled in anew (contact_stiffness.hpp).
+// With what the case leaves open filled in anew (filled_in.hpp).
 Case changed(Case c, const Remedy& remedy);
 
 // The first with the changes of the second, which come later and replace those of the same keys.
@@ -56,8 +56,8 @@ Change number_change(std::string key, double limit, int digits, Rounding roundin
 Change exact_change(std::string key, double value, int digits, const Setter& set);
 Change word_change(std::string key, std::string word, std::function<void(Case&)> apply);
 
-// A step of the fluid (s) at most or at least this, by the key that the case gives it with.
-Change fluid_step_change(const Case& c, double limit, int digits, Rounding rounding);
+// A step of the fluid (s) at most or at least this.
+Change fluid_step_change(double limit, int digits, Rounding rounding);
 
 // The largest spacing (m) of at most `most` of which every side of the domain is a whole number.
 Change spacing_change(const Case& c, double most);

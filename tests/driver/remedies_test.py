@@ -90,9 +90,6 @@ MODEL_FLUID = (CASES / "model_fluid/case.yaml").read_text()
 VARIATIONS = [
     (GRAVEL, ["fluid.subgrid_model=none"], ["no subgrid model", "2 cells across", "too short", "too weak"]),
     (GRAVEL, ["domain.spacing=3.3333333333e-4"], ["cells a step"]),
-    (GRAVEL, ["fluid.time_step=null", "fluid.maximum_lattice_velocity=0.1", "fluid.expected_velocity=0.45",
-              "run.until=30", "coupling={grain_steps_per_fluid_step: auto}"],
-     ["times fluid.expected_velocity"]),
     (GRAVEL, ["coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"],
      ["would overlap"]),
     (GRAVEL, ["domain.size.2=0.06", "grains.0.placement.pattern=uniform"], ["pattern: random"]),

@@ -1,4 +1,5 @@
 // The numbers that follow from a case, against the tables of the two papers' parameters.
+#include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/stability.hpp"
 #include "driver/plan/case_warnings.hpp"
@@ -51,12 +52,17 @@ TEST(Case, CellsAreRoundedNotCut) {
   EXPECT_EQ(cells_of(domain), (Index3{3000, 7000, 105}));  // 0.3 / 0.0001 is 2999.9999999999995
 }
 
-TEST(Case, TheStepFollowsFromTheLatticeVelocity) {
+// As long as the flow, by its speed, or its viscosity, by the relaxation time, allows; two digits, rounded down.
+TEST(Case, TheStepFollowsFromTheFlow) {
   Case c = wide_bed();
-  c.fluid.time_step.reset();
-  c.fluid.maximum_lattice_velocity = 0.05;
-  c.fluid.expected_velocity = 0.5;
-  EXPECT_NEAR(fluid_time_step(c), 5e-5, 1e-19);  // 0.05 x 0.5 mm / (0.5 m/s)
+  c.run.until = 30.0;
+  EXPECT_NEAR(suitable_time_step(c), 0.1 * c.domain.spacing / flow_estimate(c).speed, 0.1 * suitable_time_step(c));
+  EXPECT_LE(flow_estimate(c).speed * suitable_time_step(c) / c.domain.spacing, 0.1);
+  const double step = suitable_time_step(c);
+  c.run.until *= 100.0;
+  EXPECT_EQ(suitable_time_step(c), step);
+  c.fluid.kinematic_viscosity = 1e-3;  // 0.15 x (0.5 mm)^2 / 3 nu = 1.25e-5 s
+  EXPECT_EQ(suitable_time_step(c), 1.2e-5);
 }
 
 TEST(Case, GravityLeansByTheAngleOfTheSlope) {
@@ -181,9 +187,10 @@ TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
   Case c = wide_bed();
   c.run.until = 30.0;
   c.fluid.bulk_relaxation_time = 3.0;
-  c.fluid.expected_velocity = 0.09 * units_of(c).velocity();
+  const double a_cell_a_step = c.domain.spacing / flow_estimate(c).speed;
+  c.fluid.time_step = 0.09 * a_cell_a_step;
   EXPECT_TRUE(warnings(c).empty());
-  c.fluid.expected_velocity = 0.11 * units_of(c).velocity();
+  c.fluid.time_step = 0.099 * a_cell_a_step;
   ASSERT_EQ(warnings(c).size(), 1u);
   EXPECT_NE(warnings(c)[0].find("grows stripes"), std::string::npos);
   c.fluid.bulk_relaxation_time = 1.0;

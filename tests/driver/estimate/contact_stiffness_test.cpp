@@ -96,7 +96,7 @@ TEST(ContactStiffness, IsHigherWhereGrainsWouldOverlapTooFar) {
 }
 
 TEST(ContactStiffness, FollowsTheStepUnlessItIsGiven) {
-  const auto doubled = [](const Case& c) { return changed(c, {fluid_step_change(c, 2.0 * step, 3, Rounding::down)}); };
+  const auto doubled = [](const Case& c) { return changed(c, {fluid_step_change(2.0 * step, 3, Rounding::down)}); };
   const Case open = read_text(flume);
   EXPECT_NEAR(contact_duration(doubled(open)), 2.0 * contact_duration(open), 1e-15);
   const Case seconds = read_text(flume, {"contact.duration=3.0e-4"});

@@ -1,6 +1,7 @@
 // Case files: the example of the documentation and round trips.
 #include "driver/input/case_reader.hpp"
 #include "core/base/error.hpp"
+#include "driver/estimate/filled_in.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>
@@ -111,7 +112,6 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   const Case c = read(flume, {"domain.boundaries={x_low: no_slip, x_high: free_slip, y: periodic, bottom: "
                               "{type: no_slip}, top: law_of_the_wall}",
                               "gravity={vector: [0.1, 0, -9.8], mode: reduced}", "fluid.time_step=null",
-                              "fluid.maximum_lattice_velocity=0.05", "fluid.expected_velocity=1.0",
                               "contact={damping: 0.09, attraction: none}",
                               "initial.fluid={log_profile: {bed_height: 0.05, shear_velocity: 0.06, roughness: 2e-4}}",
                               "grains.1.fixed=false", "grains.1.prescribed_angular_velocity=[0, 1, 0]"});
@@ -120,7 +120,7 @@ TEST(CaseReader, ReadsEveryFormOfFacesGravityStepAndStart) {
   EXPECT_EQ(c.domain.faces[top], coupling::FaceKeys{lbm::FaceType::law_of_the_wall});
   EXPECT_EQ(gravity_vector(c.gravity), Vec3(0.1, 0, -9.8));
   EXPECT_EQ(c.gravity.mode, GravityMode::reduced);
-  EXPECT_EQ(fluid_time_step(c), 0.05 * 0.5e-3);
+  EXPECT_EQ(fluid_time_step(c), suitable_time_step(c));
   EXPECT_EQ(*c.contact.damping, 0.09);
   EXPECT_FALSE(c.contact.attraction);
   EXPECT_EQ(c.initial.fluid.log_profile->shear_velocity, 0.06);
@@ -244,9 +244,9 @@ TEST(CaseReader, StartsWithALinearProfile) {
 TEST(CaseReader, TheDefaultsAreValidAndNameEveryKey) {
   const std::string text = defaults_yaml("resolved");
   EXPECT_EQ(read(text).grains.at(0).placement.seed, 1);
-  for (const std::string key : {"x_low", "y_high", "maximum_lattice_velocity", "expected_velocity", "vector",
-                                "positions", "region", "lower", "prescribed_velocity", "prescribed_angular_velocity",
-                                "damping", "uniform", "log_profile", "bed_height", "shear_velocity", "roughness"})
+  for (const std::string key : {"x_low", "y_high", "shields_number", "depth", "vector", "positions",
+                                "region", "lower", "prescribed_velocity", "prescribed_angular_velocity", "damping",
+                                "uniform", "log_profile", "bed_height", "shear_velocity", "roughness"})
     EXPECT_NE(text.find("# " + key + ": "), std::string::npos) << key;
   // Keys that belong to a choice the defaults do not make.
   for (const std::string key :

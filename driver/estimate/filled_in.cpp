@@ -1,0 +1,71 @@
+#include "driver/estimate/filled_in.hpp"
+
+#include "driver/case/limit_text.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/contact_stiffness.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace thalweg::driver {
+
+namespace {
+
+// What plan and case warnings hold against a step: docs/stability.md.
+constexpr double accurate_excess_near_bodies = 0.15, accurate_excess = 0.029;
+
+// As check advises where the start is missing: the log law that a flow over grains of this size comes to.
+void fill_in_profile(Case& c) {
+  if (!c.initial.fluid.log_profile) return;
+  coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
+  const auto& open = c.filled_in.profile;
+  if (open.bed_height) profile.bed_height.reset();
+  if (open.shear_velocity) profile.shear_velocity.reset();
+  if (open.roughness) profile.roughness.reset();
+  const FlowEstimate flow = flow_estimate(c);
+  if (open.bed_height) profile.bed_height = settled_height(c);
+  if (open.shear_velocity) profile.shear_velocity = flow.friction_velocity;
+  if (open.roughness)
+    profile.roughness = c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * profile.shear_velocity.value_or(1.0))
+                                         : largest_diameter(c) / roughness_a_diameter;
+}
+
+}  // namespace
+
+double suitable_time_step(const Case& c) {
+  Case endless = c;  // a run that goes on for longer keeps its step
+  endless.run.until = std::numeric_limits<double>::infinity();
+  const double spacing = c.domain.spacing, speed = flow_estimate(endless).speed;
+  const double excess = lbm::trt_near_bodies(c.fluid.collision) ? accurate_excess_near_bodies : accurate_excess;
+  double longest = excess * spacing * spacing / (3.0 * c.fluid.kinematic_viscosity);
+  if (speed > 0.0) longest = std::min(longest, accurate_lattice_velocity * spacing / speed);
+  if (c.gravity.mode == GravityMode::full)
+    longest = std::min(
+        longest,
+        spacing * std::sqrt(largest_compression / (3.0 * std::abs(gravity_vector(c.gravity).z()) * c.domain.size[2])));
+  return std::stod(at_most_text(longest, 2));
+}
+
+void complete(Case& c) {
+  if (has_fluid(c)) {
+    c.filled_in.time_step = !c.fluid.time_step;
+    if (const auto& profile = c.initial.fluid.log_profile)
+      c.filled_in.profile = {!profile->bed_height, !profile->shear_velocity, !profile->roughness};
+    fill_in_profile(c);
+    if (c.filled_in.time_step) c.fluid.time_step = suitable_time_step(c);
+  }
+  if (has_grains(c.system)) complete_contacts(c);
+}
+
+void fill_in(Case& c) {
+  if (has_fluid(c)) {
+    fill_in_profile(c);
+    if (c.filled_in.time_step) c.fluid.time_step = suitable_time_step(c);
+  }
+  fill_in_contacts(c);
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,27 @@
+// What a case may leave open and what follows from its other keys: the start of the flow, the step of the fluid, the
+// stiffness of contacts and the sub-steps of the grains, in this order.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+namespace thalweg::driver {
+
+// cells/step, up to which results are accurate: a Mach number of 0.17, whose square is the error of compressibility.
+inline constexpr double accurate_lattice_velocity = 0.1;
+
+inline constexpr double largest_compression = 0.05;  // 1, of the fluid by its weight, from top to bottom
+
+// Notes what a case leaves open, and fills that in. Needs the populations and surfaces of a case that check_box()
+// accepts.
+void complete(Case& c);
+
+// Fills in again what was left open: after a change of other keys.
+void fill_in(Case& c);
+
+// s, the longest step in which the flow covers accurate_lattice_velocity, walls and grains keep their accuracy (tau -
+// 1/2 of at most 0.15 with trt near bodies, else 0.029), and the weight of the fluid under gravity.mode: full
+// compresses it by at most largest_compression; two digits, rounded down. It does not depend on the time at which the
+// run ends.
+double suitable_time_step(const Case& c);
+
+}  // namespace thalweg::driver

@@ -1,0 +1,162 @@
+#include "driver/input/derived_flow.hpp"
+
+#include "driver/case/case_sections.hpp"
+#include "driver/case/preset.hpp"
+#include "driver/case/solid_setup.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/reference_grain.hpp"
+#include "io/text/section_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double tall = 100.0;  // the first guess of the height over the sum of the other two lengths
+
+// The question that a section flow asks.
+struct Question {
+  bool height, slope;  // whether it follows
+};
+
+const io::YamlNode* size_of(const io::YamlDocument& document) {
+  const io::YamlNode* size = document.find("domain.size");
+  return size && size->kind == io::YamlNode::Kind::list ? size : nullptr;
+}
+
+Question question_of(const io::YamlDocument& document) {
+  const io::YamlNode* size = size_of(document);
+  const bool shields = document.find("flow.shields_number"), depth = document.find("flow.depth");
+  const bool slope = document.find("gravity.slope");
+  if (!shields && !depth)
+    throw document.error("flow", "the section is empty; give shields_number, for example 0.05, depth in m, or both");
+  const Question question{size && size->items.size() == 2, shields && !(slope && !depth)};
+  if (document.find("gravity.vector"))
+    throw document.error("gravity.vector", "the section flow sets the slope; give gravity.magnitude in m/s^2 instead");
+  if (document.find("fluid.mean_velocity"))
+    throw document.error("fluid.mean_velocity",
+                         "the section flow drives the water by the slope; remove one of the two sections");
+  if (depth && !question.height && size)
+    throw document.error("flow.depth",
+                         "the box has a height already; leave out the third number of domain.size, or this key");
+  if (shields && depth && slope)
+    throw document.error("gravity.slope",
+                         "it follows from flow.shields_number and flow.depth; remove one of the three");
+  if (shields && !depth && slope && !question.height)
+    throw document.error("gravity.slope",
+                         "it follows from flow.shields_number; remove one of the two, or leave out the "
+                         "third number of domain.size for the depth to follow");
+  if (question.height && !depth && !(shields && slope))
+    throw document.error("domain.size",
+                         "the height is missing; give a third number in m, flow.depth, or flow.shields_number with "
+                         "gravity.slope");
+  return question;
+}
+
+// A height cannot follow from grains that are counted by it.
+void refuse_circles(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const std::string key = fmt::format("grains.{}.solid_fraction", n);
+    if (document.find(key) && !c.grains[n].placement.region)
+      throw document.error(key,
+                           "the height of the box follows from the grains and cannot give their number; give count, "
+                           "fill, or placement.region");
+  }
+}
+
+// The case as far as its grains and solids make a bed.
+Case bed_of(const io::YamlDocument& document, const std::vector<std::string>& overrides, const Question& question,
+            const KnownBeds& known, const Ranks& ranks) {
+  std::vector<std::string> provisional = overrides;
+  if (question.height) {
+    const std::vector<io::YamlNode>& size = size_of(document)->items;
+    const auto number = [&](const io::YamlNode& node) {
+      try {
+        return std::stod(node.text);
+      } catch (const std::exception&) {
+        throw document.error("domain.size", "expected numbers in m, for example [0.06, 0.0105]");
+      }
+    };
+    provisional.push_back(fmt::format("domain.size=[{}, {}, {:.9g}]", size[0].text, size[1].text,
+                                      tall * (number(size[0]) + number(size[1]))));
+  }
+  io::YamlDocument tried(document.path(), provisional, ranks);
+  lay_preset_beneath(tried);
+  Case c;
+  io::read_document(tried, c);
+  if (c.grains.empty()) throw document.error("flow", "there are no grains that could make a bed; remove the section");
+  if (question.height) refuse_circles(c, tried);
+  fill_in_grains(c, tried, known, ranks);
+  fill_in_surfaces(c, tried, ranks);
+  return c;
+}
+
+// m, of the water that has the Shields number on the slope of the case: H from R = H W/(n H + W).
+double depth_for(const Case& c, double stress_height, const io::YamlDocument& document) {
+  const double radius = stress_height / std::sin(std::atan(*c.gravity.slope)), width = c.domain.size.y();
+  const int walls = side_walls(c);
+  if (walls * radius >= width)
+    throw document.error("flow.shields_number",
+                         fmt::format("on a slope of {:g} between side walls {:g} m apart it stays below {:.3g} however "
+                                     "deep the water; give a smaller number or a steeper gravity.slope",
+                                     *c.gravity.slope, width, *c.flow->shields_number * width / (walls * radius)));
+  return radius * width / (width - walls * radius);
+}
+
+double slope_of(const Case& c, double stress_height, double depth, const io::YamlDocument& document) {
+  const double radius = hydraulic_radius(c, depth), sine = stress_height / radius;
+  if (!(sine < 1.0))
+    throw document.error(
+        "flow.shields_number",
+        fmt::format("under {:.3g} m of water no slope gives it; give a smaller number or more water", depth));
+  return std::tan(std::asin(sine));
+}
+
+}  // namespace
+
+DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
+                         const KnownBeds& known, const Ranks& ranks) {
+  if (!document.find("flow")) return {};
+  const Question question = question_of(document);
+  Case c = bed_of(document, overrides, question, known, ranks);
+  if (!drives_flow(c, 0))
+    throw document.error("flow",
+                         "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "
+                         "periodic");
+  const ReferenceGrain grain = reference_grain(c);
+  const double excess = grain.density / c.fluid.density - 1.0, bed = settled_height(c);
+  if (excess <= neutral_density)
+    throw document.error("flow", "the grains are no heavier than the fluid and make no bed; remove the section");
+
+  // (s - 1) d tau*, the product of sine and hydraulic radius, m.
+  const double stress_height = excess * grain.diameter * c.flow->shields_number.value_or(0.0);
+  DerivedFlow derived{overrides, {}};
+  std::vector<std::string> follows;
+  double depth = c.domain.size.z() - bed;
+  if (question.height) {
+    depth = c.flow->depth ? *c.flow->depth : depth_for(c, stress_height, document);
+    const double height = c.domain.spacing * std::round((bed + depth) / c.domain.spacing);
+    depth = height - bed;
+    const std::string size = fmt::format("[{:.9g}, {:.9g}, {:.9g}]", c.domain.size.x(), c.domain.size.y(), height);
+    derived.overrides.push_back("domain.size=" + size);
+    follows.push_back("domain.size: " + size);
+  }
+  if (!(depth > 0.0))
+    throw document.error("domain.size", fmt::format("the settled bed of about {:.4g} m fills the box; give a greater "
+                                                    "height in m",
+                                                    bed));
+  if (question.slope) {
+    const std::string slope = fmt::format("{:.6g}", slope_of(c, stress_height, depth, document));
+    derived.overrides.push_back("gravity.slope=" + slope);
+    follows.push_back("gravity.slope: " + slope);
+  }
+  derived.text =
+      fmt::format("{}, for {:.4g} m of water over a bed of {:.4g} m", fmt::join(follows, " and "), depth, bed);
+  return derived;
+}
+
+}  // namespace thalweg::driver

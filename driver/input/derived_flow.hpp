@@ -1,0 +1,27 @@
+// The section flow: the slope, or the height of the box, or both, from a Shields number and a depth over the bed that
+// the grains make.
+//
+//   tau* = g sin(alpha) R / ((s - 1) g d)       R = H, or H W/(n H + W) beside n side walls (estimate/bed_flow.hpp)
+//   size z = height of the settled bed + H      rounded to whole cells
+#pragma once
+
+#include "core/parallel/ranks.hpp"
+#include "driver/input/bed_placement.hpp"
+#include "io/text/yaml_document.hpp"
+
+#include <string>
+#include <vector>
+
+namespace thalweg::driver {
+
+struct DerivedFlow {
+  std::vector<std::string> overrides;  // those given, and the keys that follow; empty: the case has no section flow
+  std::string text;                    // what follows, in words: "gravity.slope: 0.0453 and ..."
+};
+
+// Of a case file and its overrides. Throws InputError, with file and line, where the section asks for more or less than
+// leaves one flow, or for one that does not exist. Collective.
+DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
+                         const KnownBeds& known, const Ranks& ranks);
+
+}  // namespace thalweg::driver
