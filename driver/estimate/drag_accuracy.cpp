@@ -96,7 +96,8 @@ std::string drag_text(const Case& c) {
   if (reynolds < 10.0)
     return fmt::format("{}{}, {}", slow_text(c, cells),
                        thick ? ", and by more with a subgrid constant, which slow flow does not need" : "", where);
-  const bool tabled = c.fluid.subgrid().model() == lbm::SubgridModel::qr && lbm::trt_near_bodies(c.fluid.collision);
+  const bool tabled =
+      c.fluid.subgrid().model() == lbm::SubgridModel::qr && lbm::traits_of(c.fluid.collision).is_trt_near_bodies;
   if (tabled && reynolds >= tabled_reynolds[0])
     return fmt::format("of a grain alone in a stream about {:.2g} % too large {}",
                        100.0 * stream_drag_error(cells, reynolds), where);

@@ -39,7 +39,8 @@ double suitable_time_step(const Case& c) {
   Case endless = c;  // a run that goes on for longer keeps its step
   endless.run.until = std::numeric_limits<double>::infinity();
   const double spacing = c.domain.spacing, speed = flow_estimate(endless).speed;
-  const double excess = lbm::trt_near_bodies(c.fluid.collision) ? accurate_excess_near_bodies : accurate_excess;
+  const double excess =
+      lbm::traits_of(c.fluid.collision).is_trt_near_bodies ? accurate_excess_near_bodies : accurate_excess;
   double longest = excess * spacing * spacing / (3.0 * c.fluid.kinematic_viscosity);
   if (speed > 0.0) longest = std::min(longest, accurate_lattice_velocity * spacing / speed);
   if (c.gravity.mode == GravityMode::full)
