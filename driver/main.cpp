@@ -37,7 +37,7 @@ struct Failure {
   std::string message;
 };
 
-// What the exception that is being handled means to the user.
+// Message and exit code of the exception being handled.
 Failure failure() {
   try {
     throw;
@@ -58,8 +58,8 @@ int end_with(const Failure& failed, FailureBarrier& failures, bool prints) {
   return failed.code;
 }
 
-// Whether this is the only process or the first that a launcher has started, by the variables that launchers set. For
-// what is done without MPI, which may not start on login nodes.
+// True for a single process and for the first of a launcher, judged by the variables that launchers set. Used by
+// commands that run without MPI, which may not start on login nodes.
 bool first_of_its_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
     if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;
@@ -103,7 +103,7 @@ void check(const Command& command) {
   about_case(command.path, [&] { refuse_without_memory(c); });
 }
 
-// With --ranks: every rank times a piece of the case, as many ranks as a node has cores at once.
+// check --ranks: every rank times a sample of the case, as many ranks at a time as a node has cores.
 int plan(const Command& command, int argc, char** argv) {
   MpiSession session(argc, argv);
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
@@ -121,7 +121,7 @@ int plan(const Command& command, int argc, char** argv) {
   }
 }
 
-// What a command other than run prints.
+// Output of a command other than run.
 std::string answer(const Command& command) {
   switch (command.kind) {
     case Command::Kind::check:

@@ -187,7 +187,7 @@ double fastest_model_fluid(const Case& c) {
   if (c.system != SystemKind::model_fluid) return 0.0;
   model_fluid::ModelFluidParameters fluid = model_fluid_of(c);
   if (fluid.ramp) fluid.numbers.shields = std::max(fluid.numbers.shields, 1.0);  // that no bed withstands
-  // Of the smallest grain by itself: it has the lowest solid fraction and so the fastest fluid.
+  // A single grain of the smallest size has the lowest solid fraction and so the fastest fluid.
   const double radius = 0.5 * smallest_diameter(c);
   const double alone = std::pow(radius / (radius + fluid.solid_fraction.margin), c.disks ? 2.0 : 3.0);
   return coefficients_of(fluid.numbers, fluid.scales).velocity * fluid.profile(alone);

@@ -89,7 +89,7 @@ struct InitialFromCase {
   bool none() const { return !each() && (!run || run->empty()); }
 };
 
-// Where a field is taken from: the run, and the key that says so.
+// Source of an initial field: another run, and the key that names it.
 struct InitialSource {
   std::string path;  // empty: from no other run
   std::string key;   // "initial.from"
@@ -150,8 +150,8 @@ struct DisksCase {
   bool operator==(const DisksCase&) const = default;
 };
 
-// What a case leaves open and what follows from its other keys, so that it has to follow again where they change
-// (estimate/filled_in.hpp). It does not make two cases differ.
+// Keys that the case omits and that are derived from others (estimate/filled_in.hpp), so they must be derived again
+// when those change. Two cases that differ only here are the same.
 struct FilledIn {
   bool stiffness = false, tangential_stiffness = false;  // of the section contact
   bool grain_steps = false;
@@ -187,7 +187,7 @@ struct Case {
   bool operator==(const Case&) const = default;
 };
 
-// What follows from a case that read_case() has accepted.
+// Quantities derived from a case that read_case() has accepted.
 
 bool has_fluid(SystemKind system);
 bool has_fluid(const Case& c);                         // system: resolved or fluid

@@ -125,7 +125,7 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
   visit.choice<loop::OutOfBounds>("watchdog", run.watchdog,
                                   {{loop::OutOfBounds::stop, "stop", "end the run with exit code 1"},
                                    {loop::OutOfBounds::warn, "warn", "continue as long as all figures are finite"}},
-                                  {.meaning = "what to do when a figure leaves its bounds (docs/stability.md)"});
+                                  {.meaning = "action when a diagnostic leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
       {.meaning = "the run ends when the grains are at rest (looked at every 200 steps), or at run.until",
@@ -203,7 +203,7 @@ static void describe_column_run(SectionVisitor& visit, RunCase& run) {
               .example = 5.0});
 }
 
-// Of a column only; all other sections are those of a box.
+// Sections of a column; all others belong to a box.
 static void describe_column(SectionVisitor& visit, Case& c) {
   const std::string no_box = "system: continuum is a column and has no box of cells and grains; remove the section";
   for (const char* section : {"domain", "disks", "walls", "contact", "model_fluid", "coupling", "initial", "solids"})

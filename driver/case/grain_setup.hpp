@@ -9,8 +9,8 @@
 
 namespace thalweg::driver {
 
-// Where the grains are: the domain, as the case gives its size, or where that is not quite a whole number of cells, as
-// the cells make it. The same on any number of ranks.
+// Box of the grains: the domain size of the case, or the size of its whole number of cells if that differs slightly.
+// The same on any number of ranks.
 PeriodicBox grain_box(const Case& c);
 
 // Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
@@ -20,7 +20,7 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
 // All grains at the start (beds/population_seeds.hpp), for one process.
 dem::GrainSeeds grain_seeds(const Case& c);
-// Those that this rank begins with: its own and all that may touch them. Collective.
+// Initial grains of this rank: its own and all that may touch them. Collective.
 dem::GrainSeeds grain_seeds(const Case& c, MPI_Comm communicator, const Decomposition& decomposition);
 
 }  // namespace thalweg::driver

@@ -13,7 +13,7 @@ namespace thalweg::driver {
 
 namespace {
 
-// What a case may give in place of a key; a face, only as a whole.
+// Keys that replace one of the preset; a face only as a whole.
 struct Alternatives {
   const char* key;
   std::vector<const char*> others;

@@ -32,10 +32,10 @@ dem::PrescribedMotion motion_of(const SolidCase& solid);
 // The surfaces of all solids at a time (s), in m; spheres as triangles.
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);
 
-// Of a solid that turns, how far it reaches from the axis, m.
+// Largest distance of a rotating solid from its axis, m.
 double reach_from_axis(const SolidCase& solid);
 
-// That no point of a solid exceeds, m/s.
+// Upper bound of the speed of any point of a solid, m/s.
 double largest_speed(const SolidCase& solid);
 
 }  // namespace thalweg::driver

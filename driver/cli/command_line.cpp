@@ -30,21 +30,22 @@ constexpr const char* examples = R"(Examples:
   thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
   thalweg defaults coupling.lubrication                one section of it
 
-Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped in good order by a signal
-or --walltime (summary.json says which); 4 the same by thalweg stop. After 3 and 4 --resume goes on from there.)";
+Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped cleanly by a signal or
+--walltime (summary.json says which); 4 stopped cleanly by thalweg stop. After 3 and 4, --resume continues the run.)";
 
-// CLI11's own says "not in range 0.000000 to 179769313486231570..." of what is not one.
+// CLI11's own validator says "not in range 0.000000 to 179769313486231570...".
 CLI::Validator positive_number() {
   return {[](const std::string& text) {
             double value = 0.0;
-            return CLI::detail::lexical_cast(text, value) && value > 0.0 ? std::string()
-                                                                         : fmt::format("{} is no number above 0", text);
+            return CLI::detail::lexical_cast(text, value) && value > 0.0
+                       ? std::string()
+                       : fmt::format("{} is not a positive number", text);
           },
           ""};
 }
 
 constexpr const char* set_help =
-    "Replace one value of the case, e.g. fluid.time_step=1e-5; null takes a key out (repeatable)";
+    "Replace one value of the case, e.g. fluid.time_step=1e-5; null removes a key (repeatable)";
 
 struct Texts {
   std::string walltime, layout;
@@ -55,16 +56,17 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
   run->add_option("CASE.yaml", command.path, "The case")->required();
   run->add_option("--out", command.out, "Run folder to write (default: the folder run beside the case file)");
   run->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
-  run->add_option("--restart", command.restart, "Go on from a run folder's last checkpoint or from a checkpoint file");
+  run->add_option("--restart", command.restart,
+                  "Resume from a checkpoint file, or from the latest checkpoint of a run folder");
   run->add_option("--until", command.until, "Simulated time to stop at in s, instead of the case's run.until");
-  run->add_option("--walltime", texts.walltime, "Save and stop in good order before this much wall time has passed")
+  run->add_option("--walltime", texts.walltime, "Save the state and stop before this much wall time has passed")
       ->type_name("HH:MM:SS");
-  run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: chosen)")->type_name("PX,PY,PZ");
+  run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: automatic)")->type_name("PX,PY,PZ");
   run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
   run->add_flag(
          "--resume", command.resume,
-         "Begin the run, or go on with it from its last checkpoint, by what the run folder holds; a finished one is "
-         "left as it is (for job scripts)")
+         "Start the run, or resume it from its latest checkpoint, whichever the run folder requires; leave a finished "
+         "run as it is (for job scripts)")
       ->excludes("--restart")
       ->excludes("--overwrite");
   run->final_callback([&] { command.kind = Command::Kind::run; });
@@ -76,14 +78,14 @@ void add_others(CLI::App& app, Command& command) {
   check->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
   check
       ->add_option("--ranks", command.ranks,
-                   "Plan the run on so many ranks; several numbers, one row each (docs/scaling.md)")
+                   "Predict the cost on these numbers of ranks, one row each (docs/scaling.md)")
       ->delimiter(',')
       ->check(positive_number())
       ->type_name("N,N,...");
-  check->add_option("--latency", command.network.latency, "Of the network, s until a message has arrived")
+  check->add_option("--latency", command.network.latency, "Network latency, s")
       ->check(positive_number())
       ->capture_default_str();
-  check->add_option("--bandwidth", command.network.bandwidth, "Of the network, bytes/s of one rank")
+  check->add_option("--bandwidth", command.network.bandwidth, "Network bandwidth per rank, bytes/s")
       ->check(positive_number())
       ->capture_default_str();
   check->final_callback([&] { command.kind = Command::Kind::check; });
@@ -95,29 +97,30 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* info = app.add_subcommand("info", "Show the contents of a run folder or a checkpoint");
   info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")
       ->required();
-  info->add_flag("--csv", command.csv, "A table with one row a run: every figure of the summaries, with its unit");
+  info->add_flag("--csv", command.csv,
+                 "Print a table with one row per run: every number of the summaries, with its unit");
   info->final_callback([&] { command.kind = Command::Kind::info; });
   CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
-  stop->add_option("RUN_FOLDER", command.path, "The folder it writes")->required();
+  stop->add_option("RUN_FOLDER", command.path, "The run folder")->required();
   stop->final_callback([&] { command.kind = Command::Kind::stop; });
-  // For the help alone: python_command.hpp.
+  // Only listed in the help; python_command.hpp runs them.
   app.add_subcommand("analyze", "Summarise a run's sediment transport between two times (analyze --help)");
   app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
 }
 
-// What an option cannot mean, where CLI11 takes it.
+// Refuses option values that CLI11 accepts but that have no meaning.
 void refuse_nonsense(const CLI::App& app, const Command& command) {
   if (command.until && !(*command.until > 0.0 && std::isfinite(*command.until)))
     throw InputError(fmt::format("--until {:g}: give a simulated time in s, above 0.", *command.until));
   if (command.kind == Command::Kind::run && command.out.empty() && app.get_subcommand("run")->count("--out") > 0)
-    throw InputError("--out is empty: give a folder, or leave it out for the folder run beside the case file.");
+    throw InputError("--out is empty: give a folder, or omit it for the folder run beside the case file.");
 }
 
 void take_info_paths(Command& command) {
   command.path = command.runs.front();
   if (command.runs.size() > 1 && !command.csv)
     throw InputError(
-        fmt::format("info describes one run and not {}: give one path, or --csv for a table with one row a run.",
+        fmt::format("info describes one run, not {}: give one path, or --csv for a table with one row per run.",
                     command.runs.size()));
 }
 

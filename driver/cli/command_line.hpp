@@ -1,8 +1,8 @@
-// What the user asked for.
+// The parsed command line.
 #pragma once
 
 #include "core/base/types.hpp"
-#include "driver/cost/rank_cost.hpp"
+#include "driver/cost/performance_model.hpp"
 
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// What an exception means to the user.
+// Error message and exit code of an exception.
 #pragma once
 
 #include <exception>

@@ -19,14 +19,13 @@ std::vector<std::string> info_report(const std::filesystem::path& path);
 // Throws InputError unless it is one.
 void require_run_folder(const io::RunFolder& folder);
 
-// What there is to say of the state of a run that has no summary: "running", "not running: ...", or either where the
-// lock of its folder does not tell.
+// State of a run without a summary: "running", "not running: ...", or both if the lock of its folder does not tell.
 std::string state_without_summary(const io::RunFolder& folder);
 
 // summary.json; null where there is none. Throws InputError where it is damaged.
 YAML::Node summary_in(const io::RunFolder& folder);
 
-// The same; null also where a crash has left half of it.
+// As above, but null if a crash has left a truncated file.
 YAML::Node whole_summary_in(const io::RunFolder& folder);
 
 }  // namespace thalweg::driver

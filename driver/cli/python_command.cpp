@@ -53,7 +53,7 @@ int run_python_command(int argc, char** argv) {
   if (const char* more = std::getenv("PYTHONPATH"); more && *more) path.append(":").append(more);
   setenv("PYTHONPATH", path.c_str(), 1);
   if (!program.empty()) setenv("THALWEG_PROGRAM", program.c_str(), 1);
-  // What runs can have of this machine (sweep/machine.py).
+  // Resources available to the runs of a sweep (sweep/machine.py).
   setenv("THALWEG_CORES", std::to_string(available_cores()).c_str(), 1);
   setenv("THALWEG_MEMORY", fmt::format("{:.0f}", free_memory_for_runs()).c_str(), 1);
   std::string module_flag = "-m", module = "thalweg";

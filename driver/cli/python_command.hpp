@@ -3,7 +3,7 @@
 
 namespace thalweg::driver {
 
-// Whether the command line begins with one of them.
+// True if the command line begins with one of them.
 bool is_python_command(int argc, const char* const* argv);
 
 // Becomes `python -m thalweg analyze ...` with the package that belongs to this program, whose own path is then in the

@@ -23,10 +23,10 @@ enum class Resumption {
 // reading the case will tell. Throws InputError where the file is not a case at all.
 double wanted_end(const std::filesystem::path& case_file, const std::vector<std::string>& settings);
 
-// What is to be done with the folder. until: where the run is to end, s; a finished one that is to end later goes on.
-// Where the folder has a run that is not finished, takes its lock, and then the request to stop (RunFolder::stop), if
-// there is one: it came after the job before had ended, and means the chain. Throws InputError where another run has
-// the lock, or the run can neither go on nor be replaced without a loss, as its checkpoints have been removed.
+// Decides how to continue the run in the folder. until: end of the run, s; a finished run with a later end continues.
+// Takes the lock of an unfinished run, then its request to stop (RunFolder::stop), if any: this arrived between two
+// jobs and ends the chain of jobs. Throws InputError if another run holds the lock, or if the run can neither continue
+// nor be replaced without loss because its checkpoints have been removed.
 Resumption resumption_of(const io::RunFolder& folder, double until, io::FolderLock& lock);
 
 }  // namespace thalweg::driver

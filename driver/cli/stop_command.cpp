@@ -16,7 +16,7 @@
 namespace thalweg::driver {
 namespace {
 
-// Whether the last run in a folder has come to an end after which no job goes on by itself.
+// True if the last run in the folder has ended and no job will continue it.
 bool has_ended_for_good(const io::RunFolder& folder) {
   const YAML::Node summary = whole_summary_in(folder);
   return summary.IsMap() &&
@@ -32,16 +32,15 @@ std::string ask_to_stop(const std::filesystem::path& path) {
   const std::string name = path.string(), word = shell_word(name);
   const std::optional<bool> runs = io::FolderLock::is_held(path);
   if (!runs.value_or(false) && has_ended_for_good(folder))
-    return fmt::format("{} has ended; thalweg info {} tells how.", name, word);
+    return fmt::format("{} has ended; see thalweg info {}.", name, word);
   io::write_text_atomically(folder.stop(), "");
   if (runs && !*runs)
     return fmt::format(
-        "{} is not running now. A job that waits to go on with it (thalweg run --resume) will end at once "
-        "with exit code 4; to take that back: rm {}",
+        "{} is not running now. A queued job that would resume it (thalweg run --resume) will end at once "
+        "with exit code 4; to cancel this: rm {}",
         name, shell_word(folder.stop().string()));
-  return fmt::format(
-      "{} its state and ends within a step; the command of the run with --restart {} goes on from there.",
-      runs ? name + " saves" : fmt::format("If {} is running, it saves", name), word);
+  return fmt::format("{} its state and ends within a step; to continue, add --restart {} to the command of the run.",
+                     runs ? name + " saves" : fmt::format("If {} is running, it saves", name), word);
 }
 
 }  // namespace thalweg::driver

@@ -1,5 +1,4 @@
-// What the control groups of this process leave it of a machine: those of a container, of a job of a queue, or of both,
-// one in the other.
+// Limits that control groups set on this process: those of a container, of a batch job, or of one inside the other.
 #pragma once
 
 #include <filesystem>
@@ -18,14 +17,14 @@ struct GroupLimits {
 // folder where they are mounted. Of either version of control groups. What cannot be read is no limit.
 GroupLimits limits_of_groups(const std::string& own_groups, const std::filesystem::path& hierarchies);
 
-// Of this process.
+// Limits of this process.
 GroupLimits limits_of_groups();
 
 // The whole cores that the text of a cgroup's cpu.max grants, e.g. "150000 100000": 1; at least 1, none if it sets no
 // limit.
 std::optional<int> cores_by_quota(const std::string& cpu_max);
 
-// What the text of a cgroup's memory.max grants, bytes; infinity if it sets no limit ("max") or is none.
+// Limit in a cgroup's memory.max, bytes; infinity for "max" or an unreadable text.
 double memory_by_quota(const std::string& memory_max);
 
 }  // namespace thalweg::driver

@@ -1,4 +1,4 @@
-// How long a step of a case takes on a core of this machine, measured on a piece of the case.
+// Time of a step on one core of this machine, measured on a sample of the case.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -22,7 +22,7 @@ namespace {
 
 using CoreSet = std::vector<std::uint64_t>;  // a bit for each core of the machine
 
-// Those that the scheduler gives this process. The system refuses a set that is too small for the machine's cores.
+// Cores assigned to this process by the scheduler. The system call fails if the set is too small for all cores.
 CoreSet own_cores() {
   constexpr std::size_t least = 16, most = 1 << 14;  // for 1024 cores, and for a million
   for (std::size_t words = least; words <= most; words *= 2) {
@@ -51,7 +51,7 @@ int cores_of(MPI_Comm node) {
   return count_of(set);
 }
 
-// As the user tells Open MPI, or as it tells its ranks where it has noticed too many of them itself.
+// True if the user, or Open MPI having noticed oversubscription, has set one of these variables.
 bool waiting_ranks_yield() {
   for (const char* name : {"OMPI_MCA_mpi_yield_when_idle", "OMPI_MCA_mpi_oversubscribe"})
     if (const char* value = std::getenv(name)) return std::strcmp(value, "0") != 0;

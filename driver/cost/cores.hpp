@@ -1,5 +1,5 @@
-// How many cores the ranks of a node have: fewer cores than ranks cost far more than their share, because ranks that
-// wait for a message do so busily.
+// Number of cores available to the ranks of a node. With fewer cores than ranks a run is far slower than their ratio,
+// because ranks poll while they wait for messages.
 #pragma once
 
 #include <mpi.h>
@@ -8,7 +8,7 @@
 
 namespace thalweg::driver {
 
-// That this process may use, by the scheduler's set and the quota of its container and job. Needs no MPI.
+// Cores that this process may use: the scheduler's set, limited by the quota of container and job. Needs no MPI.
 int available_cores();
 
 // A warning with what to do about it if ranks of this communicator outnumber the cores of their node, by the

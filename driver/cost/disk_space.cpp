@@ -36,8 +36,8 @@ double fluid_frames(const Case& c) {
   return bytes;
 }
 
-// Of one frame: eight bytes for every number of a grain (io/vtk/grain_series.cpp), which are its place, radius,
-// connectivity and offset, and the fields.
+// Bytes of a grain in one frame (io/vtk/grain_series.cpp): eight for each number of its position, radius, connectivity,
+// offset and fields.
 double bytes_of_a_grain(const Case& c, const std::vector<io::GrainField>& fields) {
   const io::GrainOutputFacts facts = grain_output_facts(c);
   int numbers = 3 + 1 + 2;
@@ -49,7 +49,8 @@ double bytes_of_a_grain(const Case& c, const std::vector<io::GrainField>& fields
   return 8.0 * numbers;
 }
 
-// How many grains a part shows, at most: in a box as many of the smallest spheres as can have their centres in it.
+// Upper bound of the number of grains in a part: in a box, as many of the smallest spheres as can have their centres
+// there.
 double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
   double count = static_cast<double>(
       keys.population ? c.grains.at(static_cast<std::size_t>(*keys.population)).row_count() : grain_rows(c));

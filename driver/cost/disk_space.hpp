@@ -1,4 +1,4 @@
-// How much a run writes, before it is begun.
+// Disk space that a run will need.
 #pragma once
 
 #include "driver/case/case.hpp"

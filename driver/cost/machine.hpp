@@ -1,4 +1,4 @@
-// How fast the memory of this machine is: what bounds the speed of a lattice.
+// Memory bandwidth of this machine, which bounds the speed of the lattice.
 #pragma once
 
 #include <mpi.h>

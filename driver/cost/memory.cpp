@@ -4,7 +4,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "driver/cost/control_groups.hpp"
 #include "driver/cost/disk_space.hpp"
-#include "driver/cost/rank_cost.hpp"
+#include "driver/cost/performance_model.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/setup/build_system.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double usable = 0.9;  // of a node; the rest is the system's
 
-// What a file of /proc has after a word; 0 where it does not say.
+// Value of an entry of a file in /proc, KiB; 0 if it is missing.
 double kibibytes_in(const char* file, const char* name) {
   std::ifstream status(file);
   for (std::string word; status >> word;)
@@ -58,8 +58,8 @@ std::string memory_line(double needed, double there) {
 void refuse_without_memory(double needed, double on_node, double there) {
   if (on_node <= usable * there) return;
   throw InputError(fmt::format(
-      "the run takes about {} of memory{}, and {} has {}: take at least {:.0f} such nodes (check with --ranks plans "
-      "them), a larger domain.spacing, or fewer grains.",
+      "the run takes about {} of memory{}, and {} has {}: use at least {:.0f} such nodes (planned by check "
+      "--ranks), a larger domain.spacing, or fewer grains.",
       bytes_text(needed), on_node < needed ? fmt::format(", {} of it on one node", bytes_text(on_node)) : "",
       on_node < needed ? "that" : "this machine", bytes_text(there), std::ceil(needed / (usable * there))));
 }

@@ -1,4 +1,4 @@
-// How much memory there is, how much a run takes, and the refusal of one that cannot fit.
+// Memory of the machine, memory needed by a run, and the refusal of a run that does not fit.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -9,29 +9,29 @@
 
 namespace thalweg::driver {
 
-// Of this node, within the limits of container and job, bytes.
+// Memory of this node within the limits of container and job, bytes.
 double memory_of_this_node();
 
-// Of that, what runs that are started now can have, bytes.
+// Part of it that is free for new runs, bytes.
 double free_memory_for_runs();
 
 // The part of it that is a run's; the rest is the system's.
 double usable_memory_of_this_node();
 
-// What a case takes on one rank, bytes.
+// Memory needed by a case on one rank, bytes.
 double memory_on_one_rank(const Case& c);
 
-// What the report of `thalweg check` says: needed, in bytes, on machines that have `there` each.
+// Line of `thalweg check`: bytes needed, and bytes of each machine.
 std::string memory_line(double needed, double there);
 
 // Throws InputError where a run that takes `needed` bytes on all ranks, `on_node` of them on a node of `there` bytes,
 // would not fit: nine tenths of a node are a run's, the rest is the system's.
 void refuse_without_memory(double needed, double on_node, double there);
 
-// The same of a case on one rank of this machine.
+// Throws InputError if the case does not fit into this machine on one rank.
 void refuse_without_memory(const Case& c);
 
-// The same of a run that is about to start on these ranks, before it takes any memory. Collective; all ranks throw.
+// The same for a run on these ranks, before it allocates anything. Collective; all ranks throw.
 void refuse_without_memory(const Case& c, MPI_Comm communicator, const Index3& layout);
 
 // Peak memory of the processes of a run, as the system counts it, bytes; since the last call of

@@ -8,10 +8,10 @@ namespace thalweg::driver {
 
 namespace {
 
-// For the estimate of time, on one core: what sweep, halo, walls and output take, in times the memory traffic of the
-// sweep alone; a link, which computes (s: 8e-9 on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire Rapids); and
-// grain-steps (20e6 to 39e6). The flume, the wide bed and the quickstart run within a third of the estimate on either
-// AMD.
+// Costs on one core. cell_cost: sweep, halo, walls and output over the memory traffic of the sweep alone. link_seconds:
+// a link, which is bound by arithmetic (8e-9 on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire Rapids).
+// Grain-steps: 20e6 to 39e6 per second. The flume, the wide bed and the quickstart run within a third of the estimate
+// on either AMD.
 constexpr double cell_cost = 1.8, link_seconds = 12e-9;
 constexpr double grain_steps_per_second = 22e6;
 constexpr double model_fluid_steps_per_second = 4e6;  // all grains moving; three times that where few do

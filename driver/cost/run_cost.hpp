@@ -1,4 +1,4 @@
-// What a run needs, estimated from its case: work, memory, time on one core.
+// Estimated cost of a run: work, memory, time on one core.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -17,7 +17,7 @@ constexpr double most_cells = 1.5e6, most_grains = 4000.0, least_diameters = 8.0
 // Diameters between the centres of neighbours in the bed: each grain touches six others, as many as in a settled bed.
 constexpr double between_centres = 0.999;
 
-// Of the whole along x; m.
+// Length of the box along x, m.
 double length_of(const Case& c) {
   const Index3 n = cells_of(c.domain);
   double share = 1.0;

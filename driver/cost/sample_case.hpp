@@ -10,9 +10,9 @@ struct Sample {
   double share;  // of the whole, 1
 };
 
-// Of a case with grains or a fluid, or both. It has the faces of the case across y and z, and its grains, as many a
-// length. Where gravity holds them down they lie on a cubic lattice on the floor, so closely that they touch. Clumps
-// become spheres of their volume; of mixed sizes only the largest touch.
+// Sample of a case with grains, a fluid or both: the same faces across y and z, and the same number of grains per
+// length. Grains that gravity holds down lie on the floor, touching, on a cubic lattice. Clumps become spheres of their
+// volume; of mixed sizes only the largest touch.
 Sample sample_of(const Case& c);
 
 }  // namespace thalweg::driver

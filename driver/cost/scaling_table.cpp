@@ -1,7 +1,7 @@
 #include "driver/cost/scaling_table.hpp"
 
 #include "driver/cost/disk_space.hpp"
-#include "driver/cost/work_cuts.hpp"
+#include "driver/cost/load_balance.hpp"
 #include "driver/setup/build_system.hpp"
 #include "loop/progress.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 std::string row(const Case& c, int ranks, const CoreSpeed& speed, const Network& network) {
   const Index3 layout = choose_layout(c, ranks, std::nullopt);
-  const SlowestRank slowest = slowest_rank(c, planned_cuts(c, layout), speed, network);
+  const SlowestRank slowest = slowest_rank(c, planned_partition(c, layout), speed, network);
   const RankWork& work = slowest.work;
   const double step = slowest.times.sum(), seconds = step * std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   return fmt::format(
@@ -32,13 +32,12 @@ std::vector<std::string> scaling_table(const Case& c, const std::vector<int>& ra
                                        const Network& network) {
   std::vector<std::string> lines{
       fmt::format(
-          "ranks      measured on {} core{} of this machine at once: {:.4g} ms a step on one, {:.4g} for cells and "
+          "ranks      measured on {} core{} of this machine at once: {:.4g} ms per step on one, {:.4g} for cells and "
           "{:.4g} for grains",
           speed.cores, speed.cores == 1 ? "" : "s", 1e3 * speed.step(), 1e3 * speed.of_cells, 1e3 * speed.of_grains),
-      fmt::format(
-          "           planned with {:g} s until a message has arrived, {:g} s to send one and {:g} GB/s a rank; "
-          "of the rank that all wait for:",
-          network.latency, network.overhead, 1e-9 * network.bandwidth),
+      fmt::format("           predicted for a latency of {:g} s, {:g} s to send a message and {:g} GB/s per rank; "
+                  "figures of the slowest rank:",
+                  network.latency, network.overhead, 1e-9 * network.bandwidth),
       fmt::format("{:>7}  {:>12} {:>10} {:>9} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8} {:>10} {:>13} {:>10}", "ranks",
                   "layout", "cells", "grains", "ghosts", "memory", "messages", "sent", "ms a step", "waits %",
                   "efficiency", "time", "core-hours")};

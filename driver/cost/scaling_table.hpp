@@ -1,7 +1,7 @@
-// What `thalweg check --ranks` prints: a run on other numbers of ranks, planned.
+// Table of `thalweg check --ranks`: predicted cost on other numbers of ranks.
 #pragma once
 
-#include "driver/cost/rank_cost.hpp"
+#include "driver/cost/performance_model.hpp"
 
 #include <string>
 #include <vector>

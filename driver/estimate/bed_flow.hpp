@@ -40,18 +40,18 @@ inline constexpr double loosest_bed = 0.4;
 // across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no bed.
 double settled_height(const Case& c);
 
-// Whether gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls carry it as pressure.
+// True if gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls balance it by
+// pressure.
 bool drives_flow(const Case& c, int axis);
 
-// How many of the faces across y hold the flow back, 0 to 2.
+// Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
 
 // m, of a flow of this depth (m): H W/(n H + W) beside n such side walls.
 double hydraulic_radius(const Case& c, double depth);
 
-// What part of a settled bed's volume is grain, 1: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between
-// faces across y that are not periodic and closer than three diameters, which is that of the 969 grains in the flume of
-// Zhang et al. 2022, 18 diameters high.
+// Solid fraction of a settled bed: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between side walls closer
+// than three diameters, as of the 969 grains in the flume of Zhang et al. 2022, 18 diameters high.
 double settled_fraction(const Case& c);
 
 }  // namespace thalweg::driver

@@ -80,7 +80,7 @@ Overlaps expected_overlaps(const Case& c) {
   return found;
 }
 
-// Of overlaps in contacts of 1 N/m: those under weight fall with the stiffness, those in an impact with its root.
+// Scales overlaps at 1 N/m: those under weight fall with the stiffness, those in an impact with its square root.
 double least_stiffness(const Case& c) {
   dem::ContactParameters unit = c.contact;
   unit.normal_stiffness = 1.0;

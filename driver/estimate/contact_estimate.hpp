@@ -1,5 +1,4 @@
-// What loads do to the grains of a case: how deep they overlap, and whether a bed slides as a whole. Estimates for
-// `thalweg check`.
+// Overlaps of the grains of a case under load, and sliding of the bed as a whole: estimates for `thalweg check`.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -26,8 +25,8 @@ inline constexpr double stiffness_margin = 1.02;
 // have none of their own are smaller, by this margin; 0 where nothing presses.
 double least_stiffness(const Case& c);
 
-// How long the shortest contact lasts, and sound takes around the smallest free grain, in steps of the fluid. A contact
-// that ends before reverses the grain alone, which then loses momentum to the water that moved with it
+// Duration of the shortest contact, and of sound around the smallest free grain, in fluid steps. A shorter contact
+// reverses the grain without its added mass, and the grain loses momentum to that water
 // (benchmarks/validation/rebound_in_water). None without grains in a fluid.
 struct ReboundTimes {
   double contact, around;

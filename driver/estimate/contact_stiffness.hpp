@@ -14,25 +14,23 @@ namespace thalweg::driver {
 
 inline constexpr double fluid_steps_per_cell = 4.0;  // of a diameter, in a contact of default duration
 
-// Fluid steps of the default duration, unless overlaps ask for less. Of a case with free grains in a fluid.
+// Default contact duration in fluid steps, shorter if overlaps require it. The case must have free grains in a fluid.
 double default_contact_steps(const Case& c);
 
-// Whether the duration of contacts is the default one: the case has grains in a fluid and gives neither a duration nor
-// a stiffness.
+// True if the contact duration is the default: grains in a fluid, and neither a duration nor a stiffness given.
 bool has_default_duration(const Case& c);
 
-// Whether the stiffness follows from a duration, given or default.
+// True if the stiffness follows from a duration, given or default.
 bool goes_by_duration(const Case& c);
 
 // s: half a period of the shortest linear contact of two free grains whose stiffness is that of the section contact,
 // with its dashpot: the duration that gives its stiffness.
 double contact_duration(const Case& c);
 
-// Takes over the stiffnesses that a case gives, notes what it leaves open, and fills that in. Needs the populations of
-// a case that check_box() accepts.
+// Notes which stiffnesses the case omits, and derives them. Needs the populations of a case that check_box() accepts.
 void complete_contacts(Case& c);
 
-// Fills in again what was left open: after a change of other keys.
+// Derives the omitted stiffnesses again, after a change of other keys.
 void fill_in_contacts(Case& c);
 
 // The case with its stiffnesses as numbers, as if it had given them.

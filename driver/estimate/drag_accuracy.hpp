@@ -1,4 +1,4 @@
-// How accurate the drag on a grain is at a resolution, from the repository's own validations (docs/accuracy.md).
+// Error of the drag on a grain at a given resolution, from the validations (docs/accuracy.md).
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -20,8 +20,8 @@ SlowDrag slow_drag_error(double cells_per_diameter, bool cli);
 // Reynolds numbers and with the square of the resolution beyond those of the cells. Positive: too large.
 double stream_drag_error(double cells_per_diameter, double reynolds);
 
-// What a case may expect, in words: of its smallest grains at the Reynolds number of their fall, or of the flow where
-// none fall. Empty without grains in a fluid.
+// Expected error of the drag, in words, for the smallest grains at their settling Reynolds number, or at that of the
+// flow if none settle. Empty without grains in a fluid.
 std::string drag_text(const Case& c);
 
 }  // namespace thalweg::driver

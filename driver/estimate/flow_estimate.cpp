@@ -27,9 +27,9 @@ struct Channel {
   double viscosity;   // m^2/s
   double radius;      // m, of the share that the bed has: h, or the hydraulic radius between side walls
 
-  // Of the log law: the reach, without floor and top the half-width; where nothing holds the flow, the depth.
+  // Length in the log law: the reach; the half-width without floor and top; the depth without any wall.
   double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
-  // Where nothing holds the flow, that of a film.
+  // Without any wall, the profile of a film.
   LaminarChannel laminar(double acceleration) const {
     const bool held = std::isfinite(reach) || std::isfinite(half_width);
     return laminar_channel(acceleration, held ? reach : depth, half_width, viscosity);

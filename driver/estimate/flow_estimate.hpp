@@ -1,4 +1,4 @@
-// How fast the fluid of a case gets, what makes it so, and how long that takes: estimates from the case alone, for
+// Speed that the fluid of a case reaches, its cause, and the time it takes: estimates from the case alone, for
 // `thalweg check` and its warnings.
 //
 // A flow along the bed has the depth H from the settled bed to the top. Where the top drags it, each of the two
@@ -48,8 +48,8 @@ struct FlowEstimate {
   double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
   FlowCause cause = FlowCause::none;  // of that speed
 
-  // Of the flow along the bed or a bare floor, that of a slope, a mean velocity or a moving top with the largest
-  // friction velocity. Meaningless without one.
+  // Flow along the bed or a bare floor: of the drives slope, mean velocity and moving top, the one with the largest
+  // friction velocity. Undefined without one.
   FlowCause drive = FlowCause::none;
   double depth = 0.0;              // m
   double bulk_velocity = 0.0;      // m/s, mean over the depth
@@ -59,7 +59,7 @@ struct FlowEstimate {
   bool still_gaining = false;  // the run ends before a slope can have brought the flow to its speed
 };
 
-// Of a case with a fluid; all 0 without.
+// All 0 without a fluid.
 FlowEstimate flow_estimate(const Case& c);
 
 // The speed (m/s) that a flow driven by gravity along the bed can reach, whatever the time of the run. An upper

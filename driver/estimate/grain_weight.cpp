@@ -28,7 +28,7 @@ Vec3 balancing_acceleration(const Case& c) {
 
 namespace {
 
-// That of the mode alone.
+// Force by gravity.mode alone.
 ForceOnGrain weight_by_mode(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   if (c.gravity.mode == GravityMode::full) return [gravity](double mass, double) { return Vec3(mass * gravity); };

@@ -1,4 +1,4 @@
-// What gravity does to the grains of a case in a fluid.
+// Force of gravity and buoyancy on the grains of a case.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -56,7 +56,7 @@ bool are_merged(const PeriodicBox& box, const analysis::SphereInBed& a, const an
   return box.difference(apart, Vec3::Zero()).squaredNorm() < reach * reach;
 }
 
-// Of spheres of different grains that are merged, the grains stand; neighbours are looked for along x.
+// Marks grains whose spheres overlap as merged; neighbours are searched along x.
 void mark_merged(const PeriodicBox& box, std::vector<HeldGrain>& grains) {
   struct Entry {
     double x;

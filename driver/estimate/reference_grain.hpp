@@ -13,12 +13,12 @@ struct ReferenceGrain {
   double density;   // kg/m^3
 };
 
-// Of all grains that are free to move, taken together (of all, where none is): the diameter that half of their volume
-// is finer than, as for a single population (beds::median_by_mass()), unless analysis.reference_diameter gives
-// another; and their mass over their volume. The case must have grains.
+// Median diameter by volume of all free grains (of all grains, if none is free), as for a single population
+// (beds::median_by_mass()), unless analysis.reference_diameter gives another; and their mean density. The case must
+// have grains.
 ReferenceGrain reference_grain(const Case& c);
 
-// The same in words: "diameter 0.00495 m, density 2550 kg/m^3 (...)".
+// Text for reports: "diameter 0.00495 m, density 2550 kg/m^3 (...)".
 std::string reference_text(const Case& c);
 
 }  // namespace thalweg::driver

@@ -1,4 +1,4 @@
-// How fast a fluid without subgrid model may flow before its collision becomes unstable: the map of docs/stability.md.
+// Largest stable velocity of a collision model without subgrid model: the map of docs/stability.md.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -11,13 +11,13 @@
 
 namespace thalweg::driver {
 
-// Of the present state, as analysis.bed_surface measures it: bed_height (m), porosity (1, of the lower half of the
-// bed), and under a fluid flow_depth and hydraulic_radius (m) and, where something drives the flow, bed_stress (Pa) and
-// shields_number; of grains too loose to be a bed only the first two. Empty without grains, and where z is periodic.
-// Collective; the same on every rank.
+// Bed of the present state, as analysis.bed_surface measures it: bed_height (m), porosity (1, of the lower half of the
+// bed), and under a fluid flow_depth and hydraulic_radius (m) and, in a driven flow, bed_stress (Pa) and
+// shields_number; only the first two if the grains are too loose to be a bed. Empty without grains, and if z is
+// periodic. Collective; the same on every rank.
 std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const System& system);
 
-// The same in words; empty where there are none.
+// One line of text; empty for an empty list.
 std::string final_bed_text(const std::vector<Diagnostic>& bed);
 
 }  // namespace thalweg::driver

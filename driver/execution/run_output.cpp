@@ -14,7 +14,7 @@
 
 namespace thalweg::driver {
 
-// What is in every row of the series.
+// Columns with the same value in every row of the series.
 static std::vector<Diagnostic> constants_of(const Case& c) {
   if (c.grains.empty()) return {};
   const ReferenceGrain reference = reference_grain(c);
@@ -124,7 +124,7 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   if (solids_ && any_solid_moves(case_))
     plan.outputs.push_back({"solid output", Schedule(solid_frames_every(case_), time_step),
                             [this](const Snapshot& snapshot) { write_solids(snapshot.time, snapshot.step); }});
-  // With the looks at the system's health, so that nothing is written of a state that is broken.
+  // Written together with the health checks, so that a broken state is never written.
   if (!records_.empty())
     plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),
                             [this](const Snapshot&) { add_records(); }});
@@ -137,7 +137,7 @@ void RunOutput::write_row(double time, const std::vector<Diagnostic>& measured) 
   series_->append(time, values);
 }
 
-// As often as the state is saved, and at the end.
+// Called with each checkpoint and at the end.
 void RunOutput::write_profiles() {
   io::ProfileGroups groups;
   for (const auto& observer : observers_) {

@@ -1,4 +1,4 @@
-// What a run leaves behind in figures: summary.json for scripts, a table of phases for people.
+// Results of a run: summary.json for scripts, a table of phases for people.
 #pragma once
 
 #include "driver/cost/memory.hpp"
@@ -15,7 +15,7 @@
 
 namespace thalweg::driver {
 
-// What is known of a run beside its state.
+// Metadata of a run.
 struct RunIdentity {
   std::string name, system, command;
   double until;  // s

@@ -63,7 +63,7 @@ double outlet_deviation(const Case& c) {
   return largest;
 }
 
-// What a cell has at rest: the pressure of the outlets, and half the hydrostatic difference.
+// Density deviation of a fluid at rest: outlet pressure plus half the hydrostatic difference.
 double deviation_at_rest(const Case& c) {
   double deviation = outlet_deviation(c);
   if (c.gravity.mode == GravityMode::full)
@@ -72,8 +72,8 @@ double deviation_at_rest(const Case& c) {
   return deviation;
 }
 
-// Of the least of the populations that are free to move: its submerged weight over its cross-section,
-// (rho_s - rho) g (pi d^3/6)/(pi d^2/4), is 2/3 (rho_s - rho) g d; Pa. Infinite where there is none.
+// Submerged weight over cross-section of the lightest free population, Pa: (rho_s - rho) g (pi d^3/6)/(pi d^2/4) = 2/3
+// (rho_s - rho) g d. Infinite if no population is free.
 double weight_over_section(const Case& c) {
   double least = never;
   for (const beds::Population& grains : c.grains) {
@@ -108,7 +108,7 @@ double prescribed_speed(const Case& c) {
   return largest;
 }
 
-// What grains from a bed file may gain when their overlaps spring open: overlap times the contact's frequency; m/s.
+// Speed that grains from a bed file may gain as their overlaps relax: overlap times the contact frequency, m/s.
 double speed_of_overlaps(const Case& c) {
   double speed = 0.0;
   for (const beds::Population& grains : c.grains)

@@ -1,4 +1,4 @@
-// What is watched in the run of a case.
+// Watchdog limits that follow from a case.
 #pragma once
 
 #include "driver/case/case.hpp"

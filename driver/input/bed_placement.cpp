@@ -44,7 +44,7 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
       for (int axis = 0; axis < 3; ++axis)
         if (region->upper[axis] <= c.domain.size[axis])
           region->upper[axis] = std::min(region->upper[axis], box.size[axis]);
-    // Of their own, lest grain n of all of them be put at the same place.
+    // Each population gets its own seed, so that grain n of two of them does not get the same position.
     if (!document.find(key + ".placement.seed")) c.grains[n].placement.seed = static_cast<std::int64_t>(n) + 1;
     std::optional<Bed> bed;
     if (std::optional<std::string>& file = c.grains[n].placement.file) {

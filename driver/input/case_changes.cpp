@@ -95,8 +95,8 @@ bool is_in_the_checkpoint(std::string_view key) {
   return is_or_is_below("grains") && (key.find(".contact") == std::string_view::npos || is_material(key));
 }
 
-// Where a wall or a solid is follows from its motion since the start of the run, so that another one would move it at
-// once. A fluid's walls move in their own plane.
+// True for keys of the motion of a wall or solid: its position follows from the motion since the start of the run, so
+// another motion would displace it at once. Walls of a fluid move in their own plane.
 bool places_a_wall(std::string_view key, bool dry) {
   if (key.starts_with("solids.") && key.find(".motion") != std::string_view::npos) return true;
   const bool of_motion =
@@ -121,9 +121,9 @@ std::vector<CaseChange> changes_of(const Values& before, const Values& now) {
   return changes;
 }
 
-// e.g. "grains.0.density = 2650: the run that is to go on has 2550"
+// e.g. "grains.0.density = 2650: the run to be continued has 2550"
 std::string told(const CaseChange& change) {
-  return fmt::format("{} = {}: the run that is to go on {}", change.key, change.now,
+  return fmt::format("{} = {}: the run to be continued {}", change.key, change.now,
                      change.before == "none" ? "does not have this key" : "has " + change.before);
 }
 

@@ -1,4 +1,4 @@
-// What differs between the case a run was begun with and the one it is continued with.
+// Differences between the case of a run and the case it is continued with.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ struct CaseChange {
   std::string before, now;  // as written in the file; "none" where it has no such key
 };
 
-// Of two cases as resolved_yaml() writes them, in the order of the first, then of what is new. Where grains are placed
-// and what a run begins from (initial) do not count: a checkpoint has the grains and the flow.
+// Changes between two cases written by resolved_yaml(): in the order of the first, then new keys. Placement and initial
+// are ignored, because a checkpoint holds the grains and the flow.
 std::vector<CaseChange> case_changes(const std::string& before, const std::string& now);
 
 // The keys of such a case that a checkpoint fixes (see below), a line "key: value" each. A checkpoint keeps them, so

@@ -143,8 +143,8 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   if (!has_fluid(c)) return;
   if (!(relaxation_time(c) > 0.5))
     throw document.error("fluid.kinematic_viscosity",
-                         "the relaxation time of the lattice comes to 1/2, where nothing "
-                         "dissipates; give a larger viscosity in m^2/s or a longer step");
+                         "the relaxation time of the lattice is 1/2, which means no "
+                         "viscosity at all; give a larger viscosity in m^2/s or a longer step");
   if (fluid_time_step(c) > c.run.until)
     throw document.error("fluid.time_step",
                          fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
@@ -254,12 +254,12 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   if (!periodic[0] || !(c.disks || periodic[1]))
     throw document.error("domain.boundaries",
-                         "beside a side wall the fluid would flow as where grains are missing; make x and y periodic");
+                         "the model fluid takes a side wall for missing grains; make x and y periodic");
   if (c.model_fluid.ramp && c.run.until_at_rest)
     throw document.error(
         "run.until_at_rest",
-        "a rising Shields number begins where grains are at rest, and the run goes on; remove the section, "
-        "or model_fluid.ramp");
+        "a rising Shields number starts from grains at rest, which would end the run at once; remove the "
+        "section, or model_fluid.ramp");
   at_place(document, "model_fluid", [&] { check(c.model_fluid, mean_grain(c), -gravity.z()); });
 }
 

@@ -1,4 +1,4 @@
-// Whether a case that is complete can be run at all: what follows from several keys together.
+// Checks of a complete case that involve several keys.
 #pragma once
 
 #include "core/keys/key_error.hpp"
@@ -26,7 +26,7 @@ void check_box(const Case& c, const io::YamlDocument& document);
 // Throws InputError at the first thing that cannot be, with the place of the key to change in the document.
 void check_case(const Case& c, const io::YamlDocument& document);
 
-// The same of the sections of a column, before the box is known that follows from them.
+// Checks of the sections of a column, before the box is derived from them.
 void check_column(const Case& c, const io::YamlDocument& document);
 
 }  // namespace thalweg::driver

@@ -77,7 +77,7 @@ Case example_case(SystemKind system) {
   return c;
 }
 
-// What the parts common to all systems need to know of the box.
+// Derives the box that the parts common to all systems need.
 void fill_in_column(Case& c) {
   if (!c.run.time_step) c.run.time_step = column_time_step;
   const continuum::ColumnParameters column = column_of(c).column;
@@ -151,7 +151,7 @@ io::SectionWriter documentation_of(SystemKind system) {
   return writer;
 }
 
-// Of one section in one system; none where that system lacks it.
+// Documentation of one section in one system; none if the system has no such section.
 std::optional<std::string> section_yaml(const NamedSystem& system, const std::vector<std::string>& path) {
   const std::optional<std::string> text = documentation_of(system.kind).yaml_of(path);
   if (!text) return std::nullopt;

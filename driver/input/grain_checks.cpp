@@ -85,7 +85,7 @@ void check_lubrication_steps(const Case& c, const io::YamlDocument& document) {
                             : ""));
 }
 
-// Of all grains, with spheres around clumps, as they are placed. m^3
+// Volume of all grains, with bounding spheres for clumps, as random placement sees them, m^3.
 double volume_to_place(const Case& c) {
   double volume = 0.0;
   for (const beds::Population& grains : c.grains)

@@ -6,7 +6,7 @@
 
 namespace thalweg::driver {
 
-// Whether there is room for the grains in the box and where they are to be placed. Throws InputError.
+// Throws InputError if the grains do not fit into the box or into their regions.
 void check_that_grains_fit(const Case& c, const io::YamlDocument& document);
 
 // Plates, disks, clumps, materials and the steps a contact takes. Throws InputError.

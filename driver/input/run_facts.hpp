@@ -8,7 +8,7 @@ namespace thalweg::driver {
 
 analysis::RunFacts run_facts(const Case& c);
 
-// For the frames of its grains.
+// Facts for the frames of the grains.
 io::PopulationEnds population_ends(const Case& c);
 io::GrainOutputFacts grain_output_facts(const Case& c);
 

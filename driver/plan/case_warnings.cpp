@@ -66,7 +66,7 @@ Change collision_change(const char* word, lbm::CollisionModel model) {
 
 Change trt_change() { return collision_change("trt", lbm::CollisionModel::trt); }
 
-// Of the relaxation time over 1/2, by the step.
+// Changes the excess of the relaxation time over 1/2 through the time step.
 Change excess_change(const Case& c, double excess, Rounding rounding) {
   return fluid_step_change(fluid_time_step(c) * excess / (relaxation_time(c) - 0.5), 2, rounding);
 }
@@ -292,7 +292,7 @@ Warnings with_fluid(const Case& c) {
   return has_fluid(c) ? rule(c) : Warnings{};
 }
 
-// Of the case, of its plan and of rebounds, in this order.
+// Rules for the case, for its plan and for rebounds, in this order.
 const std::vector<WarningRule> case_rules{observer_warnings,
                                           drives,
                                           fast_model_fluid,

@@ -1,4 +1,4 @@
-// What does not forbid a run but deserves a second look.
+// Warnings: settings that are valid but questionable.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -11,10 +11,10 @@ namespace thalweg::driver {
 // Whole sentences.
 std::vector<std::string> warnings(const Case& c);
 
-// Of how the run is planned, its start and its length, for `thalweg check`.
+// Warnings about the start and the length of the run, for `thalweg check`.
 std::vector<std::string> warnings_of_plan(const Case& c);
 
-// Where grains rebound too weakly in the fluid: that, for a line of `thalweg check`; else nothing.
+// Remarks on grains that rebound too weakly in the fluid, for a line of `thalweg check`.
 std::vector<std::string> remarks_on_rebound(const Case& c);
 
 }  // namespace thalweg::driver

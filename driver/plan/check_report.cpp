@@ -41,7 +41,7 @@ void add_domain(const Case& c, Lines& lines) {
                               c.domain.size.y(), c.domain.size.z(), n[0], n[1], n[2], c.domain.spacing));
 }
 
-// Of the lightest two grains of each population.
+// Damping in contacts of the lightest two grains of each population.
 std::string damping_text(const Case& c) {
   const std::vector<dem::ContactParameters> materials = beds::materials_of(c.contact, c.grains);
   std::string text;
@@ -60,7 +60,7 @@ std::string range_text(double least, double most) {
   return low == high ? low : low + " to " + high;
 }
 
-// Of the lightest two free grains.
+// Film between the lightest two free grains.
 std::string film_text(const Case& c) {
   if (!(film_viscosity(c) > 0.0)) return {};
   double fastest = 0.0;
@@ -70,7 +70,7 @@ std::string film_text(const Case& c) {
   return fmt::format(", and critical below {:.1g} m/s by the film", fastest);
 }
 
-// Where it follows from the damping.
+// Restitution that follows from the damping.
 std::string restitution_text(const Case& c) {
   const std::optional<DryRestitution> dry = dry_restitution(c);
   if (!dry) return {};
@@ -78,8 +78,8 @@ std::string restitution_text(const Case& c) {
                      range_text(dry->least_at_wall, dry->most_at_wall));
 }
 
-// With one relaxation time water hardly seeps through a bed: speed over the right one in random beds, by cells across a
-// grain, with tau - 1/2 below 0.001 (benchmarks/validation/seepage).
+// Seepage with a single relaxation time, which is far too slow: computed over correct speed in random beds by cells per
+// diameter, for tau - 1/2 below 0.001 (benchmarks/validation/seepage).
 void add_seepage(const Case& c, Lines& lines) {
   constexpr double few = 6.25, some = 10.0, many = 16.0;
   constexpr double with_few = 0.005, with_some = 0.084, with_many = 0.47;
@@ -100,7 +100,7 @@ void add_seepage(const Case& c, Lines& lines) {
       cells < few ? "at most" : "about", speed));
 }
 
-// How long it lasts, and the stiffness that follows where the case does not give it.
+// Contact duration, and the stiffness derived from it if the case omits it.
 std::string duration_text(const Case& c) {
   const double shortest = shortest_contact(c);
   if (!has_fluid(c) && !c.contact.given.duration) return fmt::format("lasts {:.3g} s", shortest);
@@ -194,7 +194,7 @@ void add_model_fluid(const Case& c, Lines& lines) {
                               s.diameter, s.mass, s.gravity, std::sqrt(s.diameter / s.gravity)));
 }
 
-// Of a column. Wall time: measured, for the columns of cases/continuum.
+// Report of a column. The wall time was measured for the columns of cases/continuum.
 Lines column_report(const Case& c) {
   const continuum::SystemParameters parameters = column_of(c);
   if (parameters.creep) continuum::creep_below(parameters);  // refuses what the run would
@@ -223,7 +223,7 @@ double free_in_this_folder() {
   return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
-// Whether this machine has the memory to put the grains into their places. A run on more nodes may have it.
+// True if this machine has enough memory to place the grains. A run on more nodes may have it even so.
 bool can_be_placed_here(const Case& c) {
   return c.grains.empty() || memory_on_one_rank(c) <= usable_memory_of_this_node();
 }
@@ -236,8 +236,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   lines.push_back(work);
   lines.push_back(memory_line(memory_on_one_rank(c), memory_of_this_node()));
   if (!can_be_placed_here(c))
-    lines.push_back(
-        "           too many grains to be placed here: whether there is room for them the run will find out");
+    lines.push_back("           too many grains to be placed on this machine; the run checks whether they fit");
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
   lines.push_back(fmt::format(
       "time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... measures, and "
@@ -247,7 +246,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
 
 using LightestGrains = std::vector<dem::LightestGrain>;  // by material
 
-// Of grains that the case puts somewhere. Throws InputError where they do not fit.
+// Lightest grains that the case places. Throws InputError if they do not fit.
 LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const dem::GrainParameters& parameters) {
   LightestGrains lightest(1 + parameters.other_materials.size());
   dem::GrainSeeds start = grain_seeds(c);
@@ -261,7 +260,7 @@ LightestGrains check_placed_grains(const Case& c, const PeriodicBox& box, const 
   return lightest;
 }
 
-// Of grains that another run has put somewhere.
+// Lightest grains taken from another run.
 LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& parameters) {
   LightestGrains lightest(1 + parameters.other_materials.size());
   for (std::size_t population = 0; population < c.grains.size(); ++population)
@@ -272,7 +271,7 @@ LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& 
   return lightest;
 }
 
-// What dem would refuse when the run starts.
+// Refuses what dem would refuse at the start of the run.
 void refuse_impossible_grains(const Case& c) {
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};

@@ -20,7 +20,7 @@ bool is_accepted(const Case& c) {
   }
 }
 
-// Whether the remedy changes all that another one does.
+// True if the remedy includes all changes of the other.
 bool has_all(const Remedy& remedy, const Remedy& other) {
   return std::all_of(other.begin(), other.end(), [&](const Change& change) {
     return std::any_of(remedy.begin(), remedy.end(), [&](const Change& own) { return own.key == change.key; });

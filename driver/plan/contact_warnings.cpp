@@ -66,8 +66,7 @@ void scale_material(Case c, const std::string& section, const Material& material
   scale("damping", &beds::MaterialKeys::damping, std::sqrt(factor));
 }
 
-// Of the stiffness of the section contact, or of what it follows from; factor: what it is multiplied with, on return as
-// rounded.
+// Change of contact stiffness, or of the duration it follows from, by a factor; on return the factor as rounded.
 Change main_stiffness_change(const Case& c, double& factor, int digits, Rounding rounding) {
   if (goes_by_duration(c)) {
     const double lasts = contact_duration(c);

@@ -5,10 +5,10 @@
 
 namespace thalweg::driver {
 
-// Of overlaps above 1 % of a diameter under the weight of the bed or 5 % in an impact.
+// Warns of overlaps above 1 % of a diameter under the weight of the bed or 5 % in an impact.
 Warnings overlap_warnings(const Case& c);
 
-// Of weak_rebound(). The sentence begins with "too weak", for a line of `thalweg check`.
+// Warns of weak_rebound(). The sentence begins with "too weak", for a line of `thalweg check`.
 Warnings rebound_warnings(const Case& c);
 
 // Changes that make all contacts of the case stiffer by a factor, rounded, and keep the ratios of stiffnesses and the

@@ -20,7 +20,7 @@ bool any_held(const Case& c) {
   return std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return grains.held(); });
 }
 
-// Whether something at rest holds what moves along this axis of a periodic box: a face beside it, a grain or a solid.
+// True if something at rest exerts drag along this axis of a periodic box: a face beside it, a grain or a solid.
 bool is_held_along(const Case& c, int axis) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   if (any_held(c) || !c.solids.empty() || !c.walls.empty()) return true;
@@ -44,7 +44,7 @@ Vec3 common_acceleration(const Case& c) {
   return {gravity.x(), gravity.y(), gravity.z() * excess / mass};
 }
 
-// Whether gravity.mode: balanced is possible (check_case()).
+// True if gravity.mode: balanced is possible (check_case()).
 bool can_be_balanced(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
@@ -67,10 +67,10 @@ void warn_of_endless_acceleration(const Case& c, Sentences& found) {
     if (!(gained > 0.0) || !periodic_axes(c.domain)[static_cast<std::size_t>(axis)] || steered) continue;
     if (is_held_along(c, axis)) continue;
     const char* what = !has_fluid(c) ? "the grains" : c.grains.empty() ? "the fluid" : "fluid and grains";
-    found.push_back(fmt::format(
-        "The box is periodic along {} and nothing in it withstands gravity, so that {} gain {:.3g} m/s each "
-        "second for ever: consider {}.",
-        axis_name[axis], what, gained, what_would_hold(c)));
+    found.push_back(
+        fmt::format("The box is periodic along {} and nothing in it withstands gravity, so that {} gain {:.3g} m/s "
+                    "each second without limit: consider {}.",
+                    axis_name[axis], what, gained, what_would_hold(c)));
   }
 }
 

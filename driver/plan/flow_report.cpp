@@ -59,7 +59,7 @@ void add_slope(const FlowNumbers& flow, Lines& lines) {
                               flow.particle_reynolds, flow.friction_velocity));
 }
 
-// Of a flow that a mean velocity or a moving top drives.
+// Reports a flow driven by a mean velocity or a moving top.
 void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
   const ReferenceGrain grain = reference_grain(c);
   const double g = gravity_vector(c.gravity).norm(), excess = grain.density / c.fluid.density - 1.0;

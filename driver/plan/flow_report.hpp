@@ -1,4 +1,4 @@
-// What `thalweg check` says of the fluid, of the flow and of the bed under it.
+// Lines of `thalweg check` about the fluid, the flow and the bed.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -1,4 +1,4 @@
-// What `thalweg check` advises: changes of keys, printed so that they can be pasted, which keep what they do not name.
+// Remedies of `thalweg check`: changes of keys, printed ready to paste, that keep all other keys.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -22,7 +22,7 @@ using Remedy = std::vector<Change>;
 // "a: 1", "a: 1 and b: 2", "a: 1, b: 2 and c: 3".
 std::string text_of(const Remedy& remedy);
 
-// With what the case leaves open filled in anew (filled_in.hpp).
+// The changed case, with its omitted keys derived again (filled_in.hpp).
 Case changed(Case c, const Remedy& remedy);
 
 // The first with the changes of the second, which come later and replace those of the same keys.

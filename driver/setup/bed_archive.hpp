@@ -12,11 +12,11 @@
 
 namespace thalweg::driver {
 
-// Of every population placed by a file the rows that were taken from it (sizes, densities, places and clumps, without
+// Saves the rows of each population that was placed by a file (sizes, densities, positions and clumps, without
 // velocities), in datasets below bed_<number of the population>. Collective.
 void save_beds(ArchiveWriter& archive, MPI_Comm communicator, const Case& c);
 
-// Those of the first of these checkpoints that is not damaged; none of one that was written without.
+// Beds of the first undamaged checkpoint; none if it was written without.
 KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints);
 
 }  // namespace thalweg::driver

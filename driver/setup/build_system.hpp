@@ -19,7 +19,7 @@ Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requ
 // Cells, axes and blocks of the case's domain, cut evenly.
 Decomposition decomposition_of(const Case& c, const Index3& layout);
 
-// What a system is built with: the grains of the case where it puts them, or none, because a checkpoint brings them.
+// Grains that a system is built with: those placed by the case, or none because a checkpoint has them.
 enum class Start { as_placed, from_checkpoint };
 
 // The system the case names, at its initial state, or to be loaded. Throws InputError. Collective.

@@ -17,7 +17,7 @@ namespace thalweg::driver {
 
 namespace {
 
-// Of what a checkpoint contains and how; those without a number were written before 2.
+// Version of the checkpoint format; files without a number precede version 2.
 constexpr std::int64_t checkpoint_format = 2;
 
 // The kept case is a text in parts that an attribute has room for: it holds less than 64 kB, and more than eight
@@ -70,7 +70,7 @@ void refuse_other_case(const ArchiveReader& archive, const Case& c) {
   refuse_changes_of_state(state_changes(load_kept_case(archive), resolved_yaml(c), dry), dry);
 }
 
-// What does not fit names the file; where data have another shape than belongs to them, it is damaged.
+// Adds the file to errors about its contents; data of a wrong shape mean that it is damaged.
 template <typename Work>
 void about_file(const std::filesystem::path& path, Work&& work) {
   try {
@@ -155,7 +155,7 @@ std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
       damage.emplace_back(error.what());
     }
   }
-  throw InputError("There is no checkpoint to go on from.");
+  throw InputError("There is no checkpoint to restart from.");
 }
 
 }  // namespace thalweg::driver

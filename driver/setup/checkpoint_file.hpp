@@ -27,7 +27,7 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
 // formats had numbers may have none.)
 void require_checksums(io::Hdf5Reader& checkpoint);
 
-// Those keys and their values. Takes as long as writing the case.
+// These keys and their values. As slow as writing the case.
 std::string kept_case_of(const Case& c);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
@@ -35,7 +35,7 @@ std::string kept_case_of(const Case& c);
 RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                                 Observers& observers);
 
-// That of the first one which is not damaged; `damage`, a sentence about each before it, is added to. Returns its path.
+// Reads the first undamaged checkpoint and returns its path; appends a sentence about each damaged one to `damage`.
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,

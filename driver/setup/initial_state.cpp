@@ -45,7 +45,7 @@ constexpr double same_grain = 1e-9;
 
 bool differ(double one, double other) { return !(std::abs(one - other) <= same_grain * std::abs(other)); }
 
-// What the state has of some of its grains, one row each.
+// Some grains of the state, one row each.
 struct SavedGrains {
   std::vector<double> radius, mass;
   std::vector<std::int64_t> motion, material;
@@ -62,7 +62,7 @@ SavedGrains saved_grains(io::Hdf5Reader& archive, const RowRange& share) {
   return saved;
 }
 
-// How a grain of the state differs from the row that the case has for it; empty: it does not.
+// Difference between a grain of the state and its row in the case; empty if there is none.
 std::string difference(const SavedGrains& saved, std::size_t n, const beds::PopulationRow& here) {
   if (differ(saved.radius[n], here.radius))
     return fmt::format("a diameter of {:.6g} m and here of {:.6g} m", 2.0 * saved.radius[n], 2.0 * here.radius);

@@ -17,8 +17,8 @@ double interval_of(const analysis::Observer& observer, double series_every) {
   return observer.every() > 0.0 ? observer.every() : series_every;
 }
 
-// Whether the archive has means of measurements at another interval; this run's cannot be added to them, since all
-// would weigh the same.
+// True if the archive has means over another measurement interval, to which this run's cannot be added with equal
+// weights.
 bool has_other_weights(ArchiveReader& archive, const analysis::Observer& observer, double series_every) {
   const std::string path = interval_path(observer.name());
   return archive.has(observer.name() + "/mean_from") && archive.has(path) &&

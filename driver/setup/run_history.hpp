@@ -1,4 +1,4 @@
-// What a checkpoint keeps of a run besides its state: how far back its largest diagnostics and its means go.
+// History stored beside the state in a checkpoint: the start of each maximum and each mean.
 #pragma once
 
 #include "analysis/observer/observer.hpp"

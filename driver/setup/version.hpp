@@ -1,4 +1,4 @@
-// Which Thalweg this is.
+// Version of the program.
 #pragma once
 
 #include <string>

@@ -43,7 +43,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             said = self.resume("--until", "0.008", out=out).stdout
             self.assertNotIn("going on", said)
             said = self.resume(out=out, ranks=2).stdout   # to the later end of the case
-            self.assertIn(f"going on from {out}/checkpoints/step_32.h5", said)
+            self.assertIn(f"resuming from {out}/checkpoints/step_32.h5", said)
             self.assertEqual(self.last_checkpoint(out).read_bytes(), straight)
             before = self.state()
             for more in ((), ("--until", "0.02"), ("--until", "0.01")):
@@ -75,13 +75,13 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             (run / "summary.json").unlink()
             if text is not None:
                 (run / "summary.json").write_text(text)
-            self.assertIn("going on from run/checkpoints/step_40.h5", self.resume("--until", "0.01").stdout)
+            self.assertIn("resuming from run/checkpoints/step_40.h5", self.resume("--until", "0.01").stdout)
             self.assertTrue(self.summary("run")["finished"])
             self.assertEqual(self.last_checkpoint("run").read_bytes(), straight)
         # Killed between the first checkpoint and `latest`.
         (run / "summary.json").unlink()
         (run / "checkpoints/latest").unlink()
-        self.assertIn("going on from", self.resume("--until", "0.01").stdout)
+        self.assertIn("resuming from", self.resume("--until", "0.01").stdout)
         # Killed before its first checkpoint.
         for name in ("summary.json", "bed.h5"):
             (run / name).unlink()
@@ -89,7 +89,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             path.unlink()
         (run / "checkpoints/step_20.h5.partial").write_text("half")
         (run / "notes.txt").write_text("mine")
-        self.assertIn("ended before its first checkpoint, and begins again", self.resume("--until", "0.01").stdout)
+        self.assertIn("ended before its first checkpoint; starting again", self.resume("--until", "0.01").stdout)
         self.assertEqual(self.last_checkpoint("run").read_bytes(), straight)
         self.assertEqual((run / "notes.txt").read_text(), "mine")
 
@@ -128,15 +128,15 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
     def test_a_stop_between_two_runs_ends_the_next_once(self):
         self.unfinished()
         said = self.run_well("stop", "run").stdout
-        self.assertIn("run is not running now. A job that waits to go on with it (thalweg run --resume) will end at once", said)
+        self.assertIn("run is not running now. A queued job that would resume it (thalweg run --resume) will end at once", said)
         self.assertIn("rm run/stop", said)
         for ranks in (2, 0):
             if not (self.folder / "run/stop").exists():
                 self.run_well("stop", "run")
             stopped = self.thalweg("run", self.case, "--out", "run", "--resume", ranks=ranks)
             self.assertEqual(stopped.returncode, ASKED_TO_STOP, stopped.stderr)
-            self.assertIn("run: thalweg stop came after the last run there had ended, and ends this one before it begins; the same "
-                          "command goes on", stopped.stdout)
+            self.assertIn("run: thalweg stop was given after the last run had ended, so this one does not start; the same "
+                          "command continues the run", stopped.stdout)
         self.assertIn("going on", self.resume().stdout)
         self.assertTrue(self.summary("run")["finished"])
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)

@@ -107,7 +107,7 @@ class Sweep(ProgramTest):
         for name in ("slope_0.5", "slope_0.6"):   # as where the kill came between a checkpoint and `latest`
             (self.folder / "sweep/runs" / name / "checkpoints/latest").unlink(missing_ok=True)
         said = self.run_well("sweep", sweep).stdout
-        self.assertIn("going on from", (self.folder / "sweep/runs/slope_0.5.txt").read_text())
+        self.assertIn("resuming from", (self.folder / "sweep/runs/slope_0.5.txt").read_text())
         self.assertIn("2 of 2 runs done", said)
         self.run_well("run", self.case, "--set", "gravity.slope=0.5", "--set", "run.until=1.0", "--out", "alone")
         self.assert_same_bed("sweep/runs/slope_0.5", "alone")
@@ -228,7 +228,7 @@ class Sweep(ProgramTest):
             self.assertTrue((self.folder / "launched").read_text().startswith(f"--mpi=pmix -n 2 {THALWEG} run "))
             self.assertTrue(json.loads((run / "summary.json").read_text())["finished"])
             (run / "summary.json").unlink()   # as after a kill
-        self.assertIn("going on from", run.with_name(run.name + ".txt").read_text())
+        self.assertIn("resuming from", run.with_name(run.name + ".txt").read_text())
 
     def test_the_program_tells_what_the_machine_has(self):
         teller = self.folder / "teller"

@@ -162,7 +162,7 @@ output: {series: {every: 0.01}}
         self.assert_wants_another_turn(process)
         self.assertIn("is not running now", self.run_well("stop", self.RUN).stdout)
         latest = self.last_checkpoint(self.RUN)
-        self.assertIn("thalweg stop came after", self.assert_ends_the_chain(self.submit(), STOPPED))
+        self.assertIn("thalweg stop was given after", self.assert_ends_the_chain(self.submit(), STOPPED))
         self.assertEqual(self.last_checkpoint(self.RUN), latest)
         self.end_and_compare()
         # Submitted once more by mistake, with and without the checkpoints.

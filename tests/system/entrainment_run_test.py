@@ -159,7 +159,7 @@ analysis:
         for setting in ("entrainment.displacement=0.2", "reference_diameter=4.0e-3"):
             said = self.run_well("run", self.case, "--set", "analysis." + setting, "--out", "other", "--restart", "run", "--until",
                                  "0.01", "--overwrite").stdout
-            self.assertIn("analysis.entrainment: its sums count from 0.005 s on", said)
+            self.assertIn("analysis.entrainment: averaging starts at 0.005 s", said)
             self.assertEqual(self.summary("other")["entrainment"]["since"], 0.005)
 
     def test_what_cannot_be_watched_is_refused(self):

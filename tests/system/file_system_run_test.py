@@ -47,7 +47,7 @@ class FileSystem(ProgramTest):
     def test_one_rank_looks_for_all(self):
         blind = {"ranks": 2, "BLIND_TO": str(self.folder)}
         self.run_well_there("run", self.case, "--out", "run", "--until", "0.01", **blind)
-        self.assertIn("going on from run/checkpoints/step_8.h5",
+        self.assertIn("resuming from run/checkpoints/step_8.h5",
                       self.run_well_there("run", self.case, "--out", "run", "--resume", **blind))
         self.run_well("run", self.case, "--out", "straight")
         self.assert_same_bed("run", "straight")
@@ -72,7 +72,7 @@ class FileSystem(ProgramTest):
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("alone").read_bytes())
 
     def test_without_locks_the_log_says_so_once(self):
-        words = "the file system of run has no locks: see to it that no second run writes there"
+        words = "the file system of run has no locks: make sure that no other run writes there"
         self.run_well_there("run", self.case, "--out", "run", ranks=2, WITHOUT_LOCKS="1")
         self.assertEqual((self.folder / "run/run.log").read_text().count(words), 1)
         self.run_well("run", self.case, "--out", "with")

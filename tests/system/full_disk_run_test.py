@@ -58,7 +58,7 @@ class FullDisk(SmallDisks):
                     self.assertIn(named[0], summary["reason"])
                 self.assertEqual([path.name for path in run.rglob("*.partial")], [])
                 if not any((run / "checkpoints").glob("step_*.h5")):
-                    self.assertIn("There is no checkpoint to go on from", said[0])
+                    self.assertIn("There is no checkpoint to restart from", said[0])
                     continue
                 good = re.search(r"The last good checkpoint is (\S+)\.$", said[0])
                 self.assertIsNotNone(good, said[0])

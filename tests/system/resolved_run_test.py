@@ -58,7 +58,7 @@ analysis:
             self.assertEqual((self.folder / out / "series.csv").read_bytes(),
                              (self.folder / "one" / "series.csv").read_bytes(), out)
         # Most of the work is in the lower half, where the bed will be.
-        self.assertIn("blocks share the work, not the cells: they end along z at cells",
+        self.assertIn("load-balanced blocks end along z at cells",
                       (self.folder / "on_1x1x2/run.log").read_text())
 
     def test_a_restart_on_other_ranks_changes_nothing(self):

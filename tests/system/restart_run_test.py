@@ -155,7 +155,7 @@ class RestartOfSums(ProgramTest):
         self.run_well("run", self.case, "--out", "first")
         with_rate = ("--out", "second", "--set", "analysis.transport_rate={from: 0.02}", "--until")
         said = self.run_well("run", self.case, "--restart", "first", *with_rate, "0.1").stdout
-        self.assertIn("analysis.transport_rate: its sums count from 0.05 s on", said)
+        self.assertIn("analysis.transport_rate: averaging starts at 0.05 s", said)
         self.assertEqual(self.summary("second")["transport_rate"]["mean_from"], 0.05)
         # And still after another restart.
         self.run_well("run", self.case, "--restart", "second", *with_rate, "0.12")

@@ -62,7 +62,7 @@ output: {series: {every: 0}, checkpoint: {every: 0.02, keep: 3}}
     def test_without_a_checkpoint_it_says_so(self):
         result = self.thalweg("run", self.case, "--set", "output.checkpoint.every=0")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("There is no checkpoint to go on from: output.checkpoint.every", result.stderr)
+        self.assertIn("There is no checkpoint to restart from; set output.checkpoint.every", result.stderr)
 
 
 class Unstable(ProgramTest):

@@ -24,7 +24,7 @@ class Check(ProgramTest):
         self.assertRegex(report, r"work +500 steps to 0\.1 s, 1e\+06 grain-steps")
 
     def test_check_plans_other_numbers_of_ranks(self):
-        """The rows of the table; what is in them is the business of rank_cost_test."""
+        """The rows of the table; what is in them is the business of performance_model_test."""
         for ranks in (0, 2):
             report = self.run_well("check", self.case, "--ranks", "1,2,4", ranks=ranks).stdout
             self.assertEqual(report.count("tumbling grains"), 1)
@@ -52,7 +52,7 @@ class Check(ProgramTest):
             self.assert_refused(command, self.case, "--set", "gravity.slope=", words=["gravity.slope=", "null to take"])
             (self.folder / "slopes.yaml").write_text("case: case.yaml\nvary: {gravity.slope: [0.1, 0.2]}\n")
             self.assert_refused(command, "slopes.yaml", words=["this is a sweep", "thalweg sweep slopes.yaml"])
-        self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks: 0 is no number above 0"])
+        self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks: 0 is not a positive number"])
         self.assert_refused("run", self.case, "--layout", "2,1,1", words=["--layout", "2 rank"])
         self.assert_refused("run", self.case, "--restart", "nowhere", words=["nowhere"])
 
@@ -68,11 +68,11 @@ class Check(ProgramTest):
         checked = self.thalweg("check", channel, *huge)
         self.assertEqual(checked.returncode, 2)
         self.assertRegex(checked.stdout, r"memory +about .* more than the .* of this machine")
-        self.assertRegex(checked.stderr, r"the run takes about .* of memory.*: take at least \d+ such nodes")
+        self.assertRegex(checked.stderr, r"the run takes about .* of memory.*: use at least \d+ such nodes")
         for ranks in (0, 2):
             ran = self.thalweg("run", channel, *huge, "--out", "run", ranks=ranks)
             self.assertEqual(ran.returncode, 2)
-            self.assertRegex(ran.stderr, r"take at least \d+ such nodes")
+            self.assertRegex(ran.stderr, r"use at least \d+ such nodes")
         self.assertEqual(files_below(self.folder), ["case.yaml"])
 
 

@@ -91,7 +91,7 @@ class Stopping(ProgramTest):
         process.wait(timeout=40)
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
         log = (self.folder / "run/run.log").read_text()
-        self.assertRegex(log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun leaves only 10 s to save\)")
+        self.assertRegex(log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun allows only 10 s to save\)")
         self.assertIn("SIGCONT, as mpirun sends it before it kills: saving\n", log)
         self.assert_can_go_on(2)
 
@@ -104,13 +104,13 @@ class Stopping(ProgramTest):
             self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
             self.assert_can_go_on(2)
         elif (self.folder / "run/checkpoints/latest").exists():
-            self.assertIn("going on from", self.run_well("run", self.case, "--restart", "run", "--until", "1").stdout)
+            self.assertIn("resuming from", self.run_well("run", self.case, "--restart", "run", "--until", "1").stdout)
         else:
             self.assert_refused("run", self.case, "--restart", "run", words=["has no checkpoint"])
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)
-        self.assertIn("run saves its state and ends within a step; the command of the run with --restart run", self.run_well("stop", "run").stdout)
+        self.assertIn("run saves its state and ends within a step; to continue, add --restart run", self.run_well("stop", "run").stdout)
         self.assertEqual(process.wait(timeout=30), 4)
         self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())

@@ -24,7 +24,7 @@ std::string refusal(double needed, double on_node, double there) {
 TEST(Memory, IsRefusedWhereTheMachineHasLess) {
   EXPECT_EQ(refusal(20e9, 20e9, 24e9), "");
   EXPECT_TRUE(contains(refusal(95e9, 95e9, 24e9),
-                       "takes about 95 GB of memory, and this machine has 24 GB: take at least 5 such nodes"));
+                       "takes about 95 GB of memory, and this machine has 24 GB: use at least 5 such nodes"));
   EXPECT_EQ(refusal(80e9, 20e9, 24e9), "");  // on four nodes
   EXPECT_TRUE(contains(refusal(80e9, 40e9, 24e9), "80 GB of memory, 40 GB of it on one node, and that has 24 GB"));
 }

@@ -63,7 +63,7 @@ TEST(CaseChanges, WhatTheCheckpointContainsCannotBeChanged) {
     return std::string();
   };
   EXPECT_EQ(refused(with("density: 2550, placement", "density: 2650, placement"))
-                .find("grains.0.density = 2650: the run that is to go on has 2550"),
+                .find("grains.0.density = 2650: the run to be continued has 2550"),
             0u);
   for (const auto& [old_text, new_text] : std::vector<std::pair<std::string, std::string>>{
            {"diameter: 0.004", "diameter: 0.0045"},

@@ -1,12 +1,12 @@
 // Cuts between ranks against the work of a slab counted by hand.
-#include "driver/cost/work_cuts.hpp"
+#include "driver/cost/load_balance.hpp"
 
 #include "driver/setup/build_system.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
 
-namespace thalweg::driver::work_cuts_test {
+namespace thalweg::driver::load_balance_test {
 namespace {
 
 // 24 x 8 x 100 cells of 0.5 mm.
@@ -20,7 +20,7 @@ int cut_along_z(const Decomposition& cuts) { return cuts.block_of(0).upper[2]; }
 
 TEST(WorkCuts, StayEvenWithoutGrains) {
   const Decomposition even = decomposition_of(column(), {1, 1, 2});
-  EXPECT_EQ(cuts_by_work(column(), even, {}, MPI_COMM_SELF), even);
+  EXPECT_EQ(balanced_partition(column(), even, {}, MPI_COMM_SELF), even);
 }
 
 // 192 cells of 6.5 ns are 1.248 us in each of the 100 layers. A grain of ten cells has 1580 links of 13 ns and 50
@@ -30,7 +30,7 @@ TEST(WorkCuts, StayEvenWithoutGrains) {
 TEST(WorkCuts, HalveTheWorkOfABed) {
   const Decomposition even = decomposition_of(column(), {1, 1, 2});
   const std::vector<dem::PlacedSphere> grains(6, {Vec3(0.006, 0.002, 0.01), 2.5e-3});
-  const Decomposition cuts = cuts_by_work(column(), even, grains, MPI_COMM_SELF);
+  const Decomposition cuts = balanced_partition(column(), even, grains, MPI_COMM_SELF);
   EXPECT_EQ(cut_along_z(even), 50);
   EXPECT_EQ(cut_along_z(cuts), 23);
 }
@@ -38,12 +38,12 @@ TEST(WorkCuts, HalveTheWorkOfABed) {
 // Where gravity holds the grains on the floor a plan has most of the work there; along x nothing changes.
 TEST(WorkCuts, OfAPlanFollowTheSettledBed) {
   Case c = wide_bed();
-  const Decomposition even = decomposition_of(c, {2, 1, 2}), planned = planned_cuts(c, {2, 1, 2});
+  const Decomposition even = decomposition_of(c, {2, 1, 2}), planned = planned_partition(c, {2, 1, 2});
   EXPECT_EQ(planned.block_of(0).upper[0], even.block_of(0).upper[0]);
   EXPECT_LT(cut_along_z(planned), cut_along_z(even));
   c.system = SystemKind::fluid;
-  EXPECT_EQ(planned_cuts(c, {2, 1, 2}), even);
+  EXPECT_EQ(planned_partition(c, {2, 1, 2}), even);
 }
 
 }  // namespace
-}  // namespace thalweg::driver::work_cuts_test
+}  // namespace thalweg::driver::load_balance_test

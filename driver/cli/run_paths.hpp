@@ -1,4 +1,4 @@
-// Where a run starts and where it writes.
+// Paths of a run: its output folder and the checkpoints it starts from.
 #pragma once
 
 #include "driver/cli/command_line.hpp"
@@ -11,7 +11,7 @@
 
 namespace thalweg::driver {
 
-struct Places {
+struct RunPaths {
   std::vector<std::filesystem::path> checkpoints;  // to go on from, the best first; none: from the start
   std::filesystem::path origin;                    // the run folder they lie in; empty: none
   io::RunFolder folder;
@@ -21,7 +21,7 @@ struct Places {
 // The folder of a run that no other one is the start of: --out, or `run` beside the case.
 std::filesystem::path folder_without_restart(const Command& command);
 
-// What the first rank finds, on every rank. Throws InputError where --restart names nothing to go on from. Collective.
-Places places_of(const Command& command, MPI_Comm communicator);
+// The paths found by the first rank. Throws InputError if --restart names no checkpoint. Collective.
+RunPaths paths_of(const Command& command, MPI_Comm communicator);
 
 }  // namespace thalweg::driver

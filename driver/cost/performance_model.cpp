@@ -1,4 +1,4 @@
-#include "driver/cost/rank_cost.hpp"
+#include "driver/cost/performance_model.hpp"
 
 #include "bodies/map/link_table.hpp"
 #include "coupling/loads/grain_exchange.hpp"
@@ -14,22 +14,20 @@ namespace thalweg::driver {
 
 namespace {
 
-// What crosses a face between blocks for each of its cells, and an edge: populations.
+// Populations sent for each cell of a face between blocks, and of an edge.
 constexpr double populations_of_face = 5.0, populations_of_edge = 1.0;
-// Of a ghost in a sub-step (position, velocity, spin), and once a step: the sums of its links on their way to the owner
-// (force, torque, mass, pressure, LinkSums; of stresses moments and what solids hide), and what the owner makes of it
-// on the way back.
+// Bytes sent for a ghost: motion (position, velocity, spin) in each sub-step; once a step the sums of its links to the
+// owner (force, torque, mass, pressure, LinkSums; for stresses the moments and what solids hide), and the load back.
 constexpr double motion_bytes = 9 * 8.0;
-// Of the ghosts, those that may touch a grain of the rank and are sent in sub-steps: in a wide bed 0.78 on 2 ranks, 0.6
-// on 32, 0.5 on 256 (docs/scaling.md).
+// Fraction of the ghosts that may touch a grain of the rank and are therefore sent in sub-steps: in a wide bed 0.78 on
+// 2 ranks, 0.6 on 32, 0.5 on 256 (docs/scaling.md).
 constexpr double touching_ghosts = 0.6;
 constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = (9 + 3) * 8.0,
                  shared_bytes = coupling::GrainExchange<double>::shared * 8.0;
 // The run's decision to go on, and the largest speed of a grain; and about one a step where lists are made anew.
 constexpr double reductions = 2.0;
 
-// How much more than its share the fullest rank has: one standard deviation of grains that are where they are by
-// chance.
+// Relative excess of the fullest rank over the mean: one standard deviation of independently placed grains.
 double unevenness(const RankWork& work) { return work.grains > 1.0 ? 1.0 / std::sqrt(work.grains) : 0.0; }
 
 // Other ranks beside a block, in any of the directions that are wanted, each once.
@@ -103,7 +101,7 @@ struct Span {
   double length() const { return std::max(0.0, upper - lower); }
 };
 
-// What is the same for all ranks.
+// Quantities common to all ranks.
 struct GrainsOfCase {
   explicit GrainsOfCase(const Case& c)
       : count(static_cast<double>(grain_rows(c))),
@@ -114,7 +112,7 @@ struct GrainsOfCase {
   double count, reach, height, links;  // of rows, m, m, bytes
 };
 
-// Where grains are along an axis, m.
+// Extent of the grains along an axis, m.
 Span filled(const Case& c, const GrainsOfCase& grains, int axis) {
   if (axis < 2 || !(grains.height > 0.0)) return {0.0, c.domain.size[axis]};
   return {0.0, std::min(grains.height, c.domain.size[axis])};

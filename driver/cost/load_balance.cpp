@@ -1,4 +1,4 @@
-#include "driver/cost/work_cuts.hpp"
+#include "driver/cost/load_balance.hpp"
 
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_all_ranks.hpp"
@@ -50,7 +50,7 @@ void add(double work, double lower, double upper, const Decomposition& box, int 
   for (int k = first_cell; k <= last_cell; ++k) profile[axis][static_cast<std::size_t>(k)] += each;
 }
 
-// Whether a slab of ranks has more than a tenth more to do than the mean.
+// True if the work of a slab of ranks exceeds the mean by more than a tenth.
 bool uneven(const Decomposition& cuts, const WorkProfile& profile) {
   constexpr double tolerated = 1.1;
   const Index3& layout = cuts.layout();
@@ -90,8 +90,8 @@ std::vector<dem::PlacedSphere> grains_of(const std::filesystem::path& state, MPI
 
 }  // namespace
 
-Decomposition cuts_by_work(const Case& c, const Decomposition& even, std::span<const dem::PlacedSphere> grains,
-                           MPI_Comm communicator) {
+Decomposition balanced_partition(const Case& c, const Decomposition& even, std::span<const dem::PlacedSphere> grains,
+                                 MPI_Comm communicator) {
   WorkProfile profile;
   for (int a = 0; a < 3; ++a) profile[a].assign(static_cast<std::size_t>(even.cells()[a]), 0);
   for (const dem::PlacedSphere& grain : grains)
@@ -106,7 +106,7 @@ Decomposition cuts_by_work(const Case& c, const Decomposition& even, std::span<c
   return cuts_for(profile, even);
 }
 
-Decomposition planned_cuts(const Case& c, const Index3& layout) {
+Decomposition planned_partition(const Case& c, const Index3& layout) {
   const Decomposition even = decomposition_of(c, layout);
   if (c.system != SystemKind::resolved) return even;
   WorkProfile profile = profile_of_cells(even.cells());
@@ -121,9 +121,9 @@ Decomposition planned_cuts(const Case& c, const Index3& layout) {
   return cuts_for(profile, even);
 }
 
-Decomposition cuts_of_run(const Case& c, MPI_Comm communicator, const Index3& layout,
-                          const std::filesystem::path& state) {
-  if (state.empty()) return planned_cuts(c, layout);
+Decomposition partition_of_run(const Case& c, MPI_Comm communicator, const Index3& layout,
+                               const std::filesystem::path& state) {
+  if (state.empty()) return planned_partition(c, layout);
   const Decomposition even = decomposition_of(c, layout);
   if (c.system != SystemKind::resolved || even.ranks() == 1) return even;
   std::vector<dem::PlacedSphere> grains;
@@ -132,10 +132,10 @@ Decomposition cuts_of_run(const Case& c, MPI_Comm communicator, const Index3& la
   } catch (const std::exception&) {
     return even;
   }
-  return cuts_by_work(c, even, grains, communicator);
+  return balanced_partition(c, even, grains, communicator);
 }
 
-std::string cuts_text(const Case& c, const Decomposition& cuts) {
+std::string partition_text(const Case& c, const Decomposition& cuts) {
   if (c.system == SystemKind::continuum) return {};
   const Decomposition even = decomposition_of(c, cuts.layout());
   std::vector<std::string> axes;
@@ -151,8 +151,7 @@ std::string cuts_text(const Case& c, const Decomposition& cuts) {
     }
     if (moved) axes.push_back(fmt::format("{} at cells {}", "xyz"[a], fmt::join(ends, ", ")));
   }
-  return axes.empty() ? ""
-                      : fmt::format("blocks share the work, not the cells: they end along {}", fmt::join(axes, "; "));
+  return axes.empty() ? "" : fmt::format("load-balanced blocks end along {}", fmt::join(axes, "; "));
 }
 
 }  // namespace thalweg::driver

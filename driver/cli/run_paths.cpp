@@ -1,4 +1,4 @@
-#include "driver/cli/run_places.hpp"
+#include "driver/cli/run_paths.hpp"
 
 #include "core/parallel/on_first_rank.hpp"
 
@@ -18,7 +18,7 @@ fs::path run_folder_of(const fs::path& checkpoint) {
   return folder.is_run_folder() && folder.checkpoints() == checkpoints ? folder.path() : fs::path();
 }
 
-Places found_by(const Command& command) {
+RunPaths found_by(const Command& command) {
   std::vector<fs::path> checkpoints;
   fs::path origin;
   if (!command.restart.empty()) {
@@ -31,14 +31,14 @@ Places found_by(const Command& command) {
   return {checkpoints, origin, io::RunFolder(out), same};
 }
 
-std::string as_text(const Places& places) {
-  std::string text(1, places.same_folder ? 's' : 'o');
-  text += places.folder.path().string() + path_end + places.origin.string() + path_end;
-  for (const fs::path& checkpoint : places.checkpoints) text += checkpoint.string() + path_end;
+std::string as_text(const RunPaths& paths) {
+  std::string text(1, paths.same_folder ? 's' : 'o');
+  text += paths.folder.path().string() + path_end + paths.origin.string() + path_end;
+  for (const fs::path& checkpoint : paths.checkpoints) text += checkpoint.string() + path_end;
   return text;
 }
 
-Places of_text(const std::string& text) {
+RunPaths of_text(const std::string& text) {
   std::vector<fs::path> paths;
   for (std::size_t start = 1; start < text.size();) {
     const std::size_t end = text.find(path_end, start);
@@ -54,7 +54,7 @@ fs::path folder_without_restart(const Command& command) {
   return command.out.empty() ? fs::path(command.path).parent_path() / "run" : fs::path(command.out);
 }
 
-Places places_of(const Command& command, MPI_Comm communicator) {
+RunPaths paths_of(const Command& command, MPI_Comm communicator) {
   return of_text(told_by_first_rank(communicator, [&] { return as_text(found_by(command)); }));
 }
 

@@ -1,5 +1,5 @@
 // What is planned for many ranks, against counts by hand. tests/system and benchmarks measure the rest.
-#include "driver/cost/rank_cost.hpp"
+#include "driver/cost/performance_model.hpp"
 
 #include "driver/cost/sample_case.hpp"
 #include "driver/setup/build_system.hpp"
@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace thalweg::driver::rank_cost_test {
+namespace thalweg::driver::performance_model_test {
 namespace {
 
 RankWork total(const Case& c, const Index3& layout) {
@@ -107,4 +107,4 @@ TEST(SampleCase, IsAShortPieceOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace thalweg::driver::rank_cost_test
+}  // namespace thalweg::driver::performance_model_test

@@ -1,5 +1,5 @@
-// What a case asks of each of many ranks, and how long a step takes them: planned, nothing is run. The share of a rank
-// follows from its block, with the grains settled evenly on the floor where gravity holds them there.
+// Performance model: work of each rank of a case and time of a step, without running it. The work of a rank follows
+// from its block; grains that gravity holds on the floor are taken as settled evenly there.
 #pragma once
 
 #include "core/parallel/decomposition.hpp"
@@ -15,7 +15,7 @@ struct Network {
   double bandwidth = 1e9;    // bytes/s of a rank while the others of its node send as well
 };
 
-// Of one rank; messages and bytes are those that it sends in a step.
+// Work of one rank in a step; messages and bytes are those it sends.
 struct RankWork {
   double cells = 0.0, grains = 0.0, ghosts = 0.0;
   double memory = 0.0;  // bytes, at its largest
@@ -33,7 +33,7 @@ struct StepTimes {
   double sum() const { return computing + waiting + sending + reducing; }
 };
 
-// Of one rank; and its times on `ranks` of them.
+// Work of one rank; its times among `ranks` of them.
 RankWork rank_work(const Case& c, const Decomposition& decomposition, int rank);
 StepTimes step_times(const RankWork& work, int ranks, const CoreSpeed& speed, const Network& network);
 
