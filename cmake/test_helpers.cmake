@@ -78,10 +78,11 @@ function(thalweg_long_test)
 endfunction()
 
 # Environment under which Open MPI 4 and 5 run more ranks than cores, as root in a container, and give up their time slice.
-# All ranks of a test are on one machine: without a search for faster networks (pml ob1) each run begins 0.2 s sooner, and one
-# without mpirun another 0.2 s sooner where it starts no daemon (ess_singleton_isolated).
+# All ranks of a test are on one machine: without a search for faster networks (pml ob1) each run begins 0.2 s sooner.
+# (Without a daemon, ess_singleton_isolated, a run without mpirun would begin another 0.2 s sooner, but all such runs then have the
+# same job number, and remove each other's session folder.)
 set(THALWEG_MPI_ENVIRONMENT
-    "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_mpi_yield_when_idle=1;OMPI_MCA_btl_base_warn_component_unused=0;OMPI_MCA_hwloc_base_binding_policy=none;OMPI_MCA_btl_vader_single_copy_mechanism=none;OMPI_MCA_pml=ob1;OMPI_MCA_ess_singleton_isolated=1"
+    "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1;OMPI_MCA_mpi_yield_when_idle=1;OMPI_MCA_btl_base_warn_component_unused=0;OMPI_MCA_hwloc_base_binding_policy=none;OMPI_MCA_btl_vader_single_copy_mechanism=none;OMPI_MCA_pml=ob1"
     "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe;PRTE_MCA_hwloc_default_binding_policy=none;OMPI_MCA_smsc=^cma")
 # Clang up to 16 and GCC up to 13 take some thread-local blocks of libraries for those of glibc before 2.25, and the search for
 # leaks then crashes now and again. Without the option below they leave these blocks alone.

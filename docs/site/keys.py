@@ -10,6 +10,7 @@ SYSTEMS = {
     "continuum": "a column of two continua",
 }
 LINE = re.compile(r"^( *)(# )?(- )?(# )?(\w+):(?: (?! )(.*?))?(?:  +# (.*))?$")
+CONTINUED = re.compile(r"\n {44}#   ")   # a comment that takes more than one line
 ONLY_WITH = re.compile(r"; only with ([^;]*)$")
 INTRODUCTION = """# Keys of a case
 
@@ -83,7 +84,7 @@ def read_comment(key, comment):
 def read_keys(text):
     """All keys of what `thalweg defaults SYSTEM` prints, in order."""
     found, above = [], []   # above: (depth, path) of the sections that the line may be in
-    for line in text.split("\n"):
+    for line in re.sub(CONTINUED, " ", text).split("\n"):
         match = LINE.match(line)
         if not match or line.startswith("# Every key"):
             continue

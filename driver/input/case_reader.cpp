@@ -142,7 +142,7 @@ constexpr NamedSystem systems[] = {{"resolved", SystemKind::resolved},
 
 constexpr const char* how_to_read =
     "Comments give the unit, the range and the\n# meaning. \"example\": the key has no default, and the value is only "
-    "plausible; keys that are commented out\n# are optional, and their values are examples as well.\n";
+    "illustrative; keys that are commented out\n# are optional, and their values are examples as well.\n";
 
 io::SectionWriter documentation_of(SystemKind system) {
   io::SectionWriter writer(io::YamlStyle::documented);

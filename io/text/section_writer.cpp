@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 namespace thalweg::io {
 namespace {
 
-constexpr std::size_t comment_column = 44;
+constexpr std::size_t comment_column = 44, last_column = 110;
 
 std::string yaml_text(const std::string& text) {
   std::string result = "\"";
@@ -134,12 +135,16 @@ void SectionWriter::value_of(const std::string& key, bool& value, const TextKey&
   put(true, key, value ? "true" : "false", style_ == YamlStyle::plain ? "" : "true | false; " + about.meaning);
 }
 
-std::string SectionWriter::comment_of(const std::vector<Word>& words, const SectionKey& about) const {
+std::string SectionWriter::comment_of(const std::vector<Word>& words, const SectionKey& about) {
   if (style_ == YamlStyle::plain) return "";
-  std::vector<std::string> names;
-  for (const Word& word : words)
-    names.push_back(word.meaning.empty() ? word.name : fmt::format("{} ({})", word.name, word.meaning));
-  return fmt::format("{}{}; {}", about.required ? "required, " : "", fmt::join(names, " | "), about.meaning);
+  std::vector<std::string> names, choices;
+  for (const Word& word : words) {
+    names.push_back(word.name);
+    choices.push_back(word.meaning.empty() ? word.name : fmt::format("{} ({})", word.name, word.meaning));
+  }
+  const std::string full = fmt::format("{}", fmt::join(choices, " | "));
+  short_choices_[full] = fmt::format("{}", fmt::join(names, " | "));
+  return fmt::format("{}{}; {}", about.required ? "required, " : "", full, about.meaning);
 }
 
 void SectionWriter::word(const std::string& key, std::size_t& index, const std::vector<Word>& words,
@@ -232,14 +237,40 @@ std::string SectionWriter::text_of(const Line& line) {
     text.resize(std::max(text.size() + 2, comment_column), ' ');
     text += "# " + line.comment;
   }
-  return text + "\n";
+  return text;
 }
 
-std::string SectionWriter::yaml() const {
+// Breaks a long comment at blanks; its other lines begin with "#   ".
+std::string SectionWriter::folded(std::string text) {
+  const std::string margin = std::string(comment_column, ' ') + "#   ";
+  const std::size_t mark = text.find(" # ", std::min(text.size(), comment_column - 1));
+  std::size_t begin = mark == std::string::npos ? text.size() : mark + 3;
   std::string result;
-  for (const Line& line : lines_) result += text_of(line);
+  while (text.size() > last_column && begin < text.size()) {
+    std::size_t blank = text.rfind(' ', last_column);
+    if (blank <= begin) blank = std::min(text.find(' ', last_column), text.size());
+    result += text.substr(0, blank) + "\n";
+    text = margin + text.substr(std::min(blank + 1, text.size()));
+    begin = margin.size();
+  }
+  return text == margin ? result : result + text + "\n";
+}
+
+// Explains each list of choices once, where it is shown first.
+std::string SectionWriter::yaml_of(std::span<const Line> lines) const {
+  std::set<std::string> explained;
+  std::string result;
+  for (Line line : lines) {
+    for (const auto& [full, brief] : short_choices_)
+      if (const std::size_t at = line.comment.find(full + ";");
+          at != std::string::npos && !explained.insert(full).second)
+        line.comment.replace(at, full.size(), brief);
+    result += style_ == YamlStyle::documented ? folded(text_of(line)) : text_of(line) + "\n";
+  }
   return result;
 }
+
+std::string SectionWriter::yaml() const { return yaml_of(lines_); }
 
 SectionWriter::Range SectionWriter::inside(std::size_t head) const {
   Range range{head + 1, head + 1};
@@ -256,7 +287,7 @@ std::vector<std::size_t> SectionWriter::heads_in(const Range& range) const {
 
 std::optional<std::string> SectionWriter::yaml_of(const std::vector<std::string>& path) const {
   Range range{0, lines_.size()};
-  std::string result;
+  std::vector<Line> shown;
   int depth = -1;
   for (const std::string& name : path) {
     const std::vector<std::size_t> heads = heads_in(range);
@@ -265,11 +296,11 @@ std::optional<std::string> SectionWriter::yaml_of(const std::vector<std::string>
     Line head = lines_[*found];
     head.item = head.depth > depth + 1;  // the first that is shown of an entry of a list
     depth = head.depth;
-    result += text_of(head);
+    shown.push_back(head);
     range = inside(*found);
   }
-  for (std::size_t n = range.begin; n < range.end; ++n) result += text_of(lines_[n]);
-  return result;
+  for (std::size_t n = range.begin; n < range.end; ++n) shown.push_back(lines_[n]);
+  return yaml_of(shown);
 }
 
 std::vector<std::string> SectionWriter::sections() const {

@@ -3,15 +3,17 @@
 
 #include "core/keys/section_visitor.hpp"
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace thalweg::io {
 
 // plain: every key that has a value, its unit as a comment. documented: meanings as well, and the keys that are not
-// given as comments, so that the text is both a valid file and the reference of all keys; a value that is no default
-// is marked as an example.
+// given as comments, so that the text is both a valid file and the reference of all keys, in lines of at most 110
+// columns; a value that is no default is marked as an example.
 enum class YamlStyle { plain, documented };
 
 class SectionWriter final : public SectionVisitor {
@@ -44,7 +46,9 @@ private:
   struct Range {
     std::size_t begin, end;  // of lines
   };
-  static std::string text_of(const Line& line);
+  static std::string text_of(const Line& line);  // without a line end
+  static std::string folded(std::string text);   // with line ends
+  std::string yaml_of(std::span<const Line> lines) const;
   Range inside(std::size_t head) const;                         // what is deeper than that line, behind it
   std::vector<std::size_t> heads_in(const Range& range) const;  // lines with the keys of the first level there
 
@@ -78,7 +82,7 @@ private:
   void put(bool given, const std::string& key, const std::string& value, const std::string& comment,
            Source source = Source::default_value);
   std::string comment_of(const RealKey& about) const;
-  std::string comment_of(const std::vector<Word>& words, const SectionKey& about) const;
+  std::string comment_of(const std::vector<Word>& words, const SectionKey& about);
 
   YamlStyle style_;
   bool given_ = true;              // false inside a section that is not given
@@ -86,6 +90,7 @@ private:
   bool optional_section_ = false;  // the next section may be left out
   std::string only_with_;          // the choice that has the next key, where the case has made another
   int depth_ = 0;
+  std::map<std::string, std::string> short_choices_;  // names of choices, by the list with their meanings
   std::vector<Line> lines_;
 };
 
