@@ -11,8 +11,7 @@ install(DIRECTORY python DESTINATION ${thalweg_data_folder} PATTERN "__pycache__
 install(CODE "set(FROM \"${PROJECT_SOURCE_DIR}/cases\")
 set(TO \"\${CMAKE_INSTALL_PREFIX}/${thalweg_data_folder}/cases\")
 include(\"${PROJECT_SOURCE_DIR}/cmake/install_cases.cmake\")")
-install(PROGRAMS scripts/plot_run.py scripts/picture.py scripts/paraview_view.py scripts/compare_checkpoints.py
-        DESTINATION ${thalweg_data_folder}/scripts)
+install(PROGRAMS scripts/paraview_view.py scripts/compare_checkpoints.py DESTINATION ${thalweg_data_folder}/scripts)
 install(FILES scripts/mpi_environment DESTINATION ${thalweg_data_folder}/scripts)   # to be sourced
 install(PROGRAMS scripts/cluster/slurm.sh scripts/cluster/pbs.sh scripts/cluster/turn.sh
         DESTINATION ${thalweg_data_folder}/scripts/cluster)

@@ -4,7 +4,7 @@
     pvpython scripts/paraview_view.py RUN_FOLDER [--state FILE] [--out FILE] [--time SECONDS] [--size WIDTH HEIGHT]
 
 The state (RUN_FOLDER/view.pvsm) is what File > Load State opens in ParaView, with all times of the run to step through. It is
-made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView, scripts/picture.py
+made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView, thalweg plot picture
 draws a similar picture.
 """
 import argparse

@@ -2,14 +2,19 @@
 
 #include "core/base/error.hpp"
 #include "core/base/shell_word.hpp"
+#include "driver/cli/python_command.hpp"
 #include "driver/setup/version.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace thalweg::driver {
 
@@ -26,6 +31,8 @@ constexpr const char* examples = R"(Examples:
   thalweg info --csv run/* > runs.csv                  the figures of many runs, one row each
   thalweg stop run/a                                   save and end; --restart goes on
   thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
+  thalweg plot all run/a                               side view, transport rate and profiles (plot --help: more kinds)
+  thalweg report run/a                                 all about a run on one page
   thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
   thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
   thalweg defaults coupling.lubrication                one section of it
@@ -104,8 +111,7 @@ void add_others(CLI::App& app, Command& command) {
   stop->add_option("RUN_FOLDER", command.path, "The run folder")->required();
   stop->final_callback([&] { command.kind = Command::Kind::stop; });
   // Only listed in the help; python_command.hpp runs them.
-  app.add_subcommand("analyze", "Summarise a run's sediment transport between two times (analyze --help)");
-  app.add_subcommand("sweep", "Run a case with many values of its keys, on all cores (sweep --help)");
+  for (const PythonCommand& other : python_commands) app.add_subcommand(other.name, other.summary);
 }
 
 // Refuses option values that CLI11 accepts but that have no meaning.
@@ -127,10 +133,13 @@ void take_info_paths(Command& command) {
 // CLI11 would only say that a subcommand is missing.
 void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return;
-  for (const CLI::App* known : app.get_subcommands({}))
-    if (known->get_name() == argv[1]) return;
-  throw InputError(fmt::format(
-      "{} is not a command: there are run, check, analyze, sweep, defaults, info and stop (thalweg --help).", argv[1]));
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
+  const std::string last = known.back();
+  known.pop_back();
+  throw InputError(
+      fmt::format("{} is not a command: there are {} and {} (thalweg --help).", argv[1], fmt::join(known, ", "), last));
 }
 
 // CLI11's messages are fragments; users get a whole sentence that says where to look.

@@ -7,11 +7,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -34,7 +36,8 @@ static fs::path python_package(const fs::path& program) {
 }
 
 bool is_python_command(int argc, const char* const* argv) {
-  return argc > 1 && (std::strcmp(argv[1], "analyze") == 0 || std::strcmp(argv[1], "sweep") == 0);
+  return argc > 1 && std::any_of(std::begin(python_commands), std::end(python_commands),
+                                 [&](const PythonCommand& known) { return std::strcmp(argv[1], known.name) == 0; });
 }
 
 int run_python_command(int argc, char** argv) {

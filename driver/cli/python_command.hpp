@@ -1,7 +1,19 @@
-// `thalweg analyze` and `thalweg sweep`: the Python package does them.
+// The commands that the Python package does, such as `thalweg analyze`.
 #pragma once
 
 namespace thalweg::driver {
+
+struct PythonCommand {
+  const char* name;
+  const char* summary;  // for the help
+};
+
+inline constexpr PythonCommand python_commands[] = {
+    {"analyze", "Summarise a run's sediment transport between two times (analyze --help)"},
+    {"plot", "Draw figures, a film or a picture of runs (plot --help)"},
+    {"report", "Describe a run on one page, an HTML file (report --help)"},
+    {"sweep", "Run a case with many values of its keys, on all cores (sweep --help)"},
+};
 
 // True if the command line begins with one of them.
 bool is_python_command(int argc, const char* const* argv);

@@ -1,9 +1,11 @@
-"""`thalweg analyze RUN` and `thalweg sweep SWEEP.yaml`, which are `python -m thalweg analyze RUN` and so on."""
+"""The commands of Thalweg that are written in Python: `thalweg analyze RUN` is `python -m thalweg analyze RUN`, and so on."""
 import argparse
 import sys
 from pathlib import Path
 
 try:
+    import thalweg.plot
+    import thalweg.page.command
     import thalweg.sweep.command
     from thalweg.errors import RunFolderError
     from thalweg.report import report_of
@@ -13,20 +15,26 @@ except ModuleNotFoundError as missing:
              "on Debian), or set THALWEG_PYTHON to an interpreter that has it.")
 
 
-def parse(arguments):
-    parser = argparse.ArgumentParser(prog="thalweg", description=__doc__)
-    commands = parser.add_subparsers(dest="command", required=True)
-    analyze = commands.add_parser(
+def add_analyze_to(commands):
+    parser = commands.add_parser(
         "analyze", description="Transport, surface, Shields number and profiles of a run between two times, from what it "
                                "has stored. A run that is still going can be looked at, too.")
-    analyze.add_argument("run", type=Path, metavar="RUN", help="Run folder")
-    analyze.add_argument("--from", dest="start", type=float, metavar="SECONDS",
-                         help="Begin of the averages (default: analysis.transport_rate.from, or half of the run)")
-    analyze.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Their end (default: of the run)")
-    analyze.add_argument("--out", type=Path, metavar="FOLDER",
-                         help="Where summary.json and the tables go (default: analysis in the run folder)")
+    parser.add_argument("run", type=Path, metavar="RUN", help="Run folder")
+    parser.add_argument("--from", dest="start", type=float, metavar="SECONDS",
+                        help="Begin of the averages (default: analysis.transport_rate.from, or half of the run)")
+    parser.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Their end (default: of the run)")
+    parser.add_argument("--out", type=Path, metavar="FOLDER",
+                        help="Where summary.json and the tables go (default: analysis in the run folder)")
+
+
+def parser_of_commands():
+    parser = argparse.ArgumentParser(prog="thalweg", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    add_analyze_to(commands)
+    thalweg.plot.add_to(commands)
+    thalweg.page.command.add_to(commands)
     thalweg.sweep.command.add_to(commands)
-    return parser.parse_args(arguments)
+    return parser
 
 
 def analyze(wanted):
@@ -38,9 +46,11 @@ def analyze(wanted):
 
 
 def main(arguments=None):
-    wanted = parse(arguments)
+    wanted = parser_of_commands().parse_args(arguments)
+    actions = {"analyze": analyze, "plot": thalweg.plot.plot, "report": thalweg.page.command.report,
+               "sweep": thalweg.sweep.command.sweep}
     try:
-        return analyze(wanted) if wanted.command == "analyze" else thalweg.sweep.command.sweep(wanted)
+        return actions[wanted.command](wanted)
     except RunFolderError as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2

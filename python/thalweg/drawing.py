@@ -1,4 +1,4 @@
-"""The side view: lit grains in front of the water, as plot_run.py and its film draw it."""
+"""The side view: lit grains in front of the water, as thalweg plot draws it, alone and in films."""
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np

@@ -25,13 +25,13 @@ if(NOT code EQUAL 2 OR NOT said MATCHES "there is none in ${WORK}/alone/share/th
   message(FATAL_ERROR "thalweg analyze without its package: ${code} ${said}")
 endif()
 # What the documentation names is there; the scripts find the package.
-foreach(script plot_run.py picture.py paraview_view.py compare_checkpoints.py mpi_environment cluster/slurm.sh cluster/pbs.sh
+foreach(script paraview_view.py compare_checkpoints.py mpi_environment cluster/slurm.sh cluster/pbs.sh
                cluster/turn.sh)
   if(NOT EXISTS ${WORK}/prefix/share/thalweg/scripts/${script})
     message(FATAL_ERROR "scripts/${script} is not installed")
   endif()
 endforeach()
-run(${PYTHON} -B ${WORK}/prefix/share/thalweg/scripts/plot_run.py --help)
+run(${WORK}/prefix/bin/thalweg plot --help)
 run(${PYTHON} -B ${WORK}/prefix/share/thalweg/scripts/compare_checkpoints.py --help)
 run(${WORK}/prefix/bin/thalweg check ${WORK}/prefix/share/thalweg/cases/quickstart/case.yaml)
 # Cases are copied with the files beside them, and without what runs and sweeps have left in folders below.

@@ -1,9 +1,12 @@
-"""The scripts of python/figures draw a run folder, and say in one sentence what is missing."""
+"""thalweg plot draws a run folder, and says in one sentence what is missing."""
+import os
+import shutil
 import subprocess
 import sys
 import unittest
 
 import matplotlib.image
+import matplotlib.pyplot
 import numpy as np
 from PIL import Image
 
@@ -12,6 +15,7 @@ from made_up_folder import ROOT
 
 sys.path.insert(0, str(ROOT / "tests/support"))
 import made_up_profiles
+from thalweg.figures import relation
 
 D = 4.95e-3
 
@@ -30,9 +34,9 @@ class Figures(made_up.MadeUpFolder):
         rows = "".join(f"{t},{q}\n" for t, q in zip(time, self.rate))
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + rows)
 
-    def script(self, name, *options):
-        return subprocess.run([sys.executable, "-B", ROOT / "python/figures" / name, self.folder, *options], text=True,
-                              capture_output=True)
+    def plot(self, kind, *options):
+        return subprocess.run([sys.executable, "-B", "-m", "thalweg", "plot", kind, self.folder, *options], text=True,
+                              capture_output=True, env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
 
     def drawn(self, done, out):
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -41,7 +45,7 @@ class Figures(made_up.MadeUpFolder):
         self.assertGreater(len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)), 10)
 
     def refused(self, done, words):
-        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(done.returncode, 2, done.stdout)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn(words, done.stderr)
 
@@ -51,7 +55,7 @@ class Figures(made_up.MadeUpFolder):
     def test_the_transport_relation(self):
         self.write_profiles()
         out = self.folder / "relation.png"
-        done = self.script("transport_relation.py", "--out", out)
+        done = self.plot("relation", "--out", out)
         self.drawn(done, out)
         name, shields, bed, mean = done.stdout.splitlines()[2].split("|")[1:5]
         # The surface of the made-up profiles is half way from the middle of the sixth layer to that of the seventh.
@@ -63,29 +67,45 @@ class Figures(made_up.MadeUpFolder):
 
     def test_what_a_camera_sees(self):
         out = self.folder / "visible.png"
-        self.drawn(self.script("visible_grains.py", "--out", out), out)
+        self.drawn(self.plot("visible", "--out", out), out)
 
     def test_bed_profiles(self):
-        self.refused(self.script("bed_profiles.py"), "no means of the grains yet")
+        self.refused(self.plot("profiles"), "no means of grains or fluid yet")
         self.write_profiles()
-        out = self.folder / "profiles.png"
-        self.drawn(self.script("bed_profiles.py", "--out", out), out)
+        self.drawn(self.plot("profiles"), self.folder / "profiles.png")
 
     def test_bed_profiles_with_the_balance(self):
         self.write_profiles()
         made_up_profiles.add_stress_balance(self.folder / "profiles.h5", D)
-        out = self.folder / "balance.png"
-        self.drawn(self.script("bed_profiles.py", "--out", out), out)
+        out = self.folder / "figures/balance.png"
+        self.drawn(self.plot("profiles", "--out", out), out)
 
     def test_a_film(self):
         for name in ("film.gif", "film"):
-            done = self.script("movie.py", "--out", self.folder / name, "--every", "0.2", "--width", "300")
+            done = self.plot("film", "--out", self.folder / name, "--every", "0.2", "--width", "300")
             self.assertEqual(done.returncode, 0, done.stderr)
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual(film.n_frames, 4)   # at 0, 0.2, 0.4, 0.6 s
         self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)
-        self.refused(self.script("movie.py", "--from", "5"), "no frame of the grains in this time")
-        self.refused(self.script("movie.py", "--out", self.folder / "film.webm"), "give a .gif, an .mp4 or a folder")
+        self.refused(self.plot("film", "--from", "5"), "no frame of the grains in this time")
+        self.refused(self.plot("film", "--out", self.folder / "film.webm"), "give a .gif, an .mp4 or a folder")
+
+    def test_figures_of_several_runs_go_into_their_folders(self):
+        other = self.folder.parent / "other"
+        shutil.copytree(self.folder, other)
+        done = self.plot("q", other)
+        self.assertEqual(done.stdout.split(), [str(folder / "transport_rate.png") for folder in (self.folder, other)])
+        self.refused(self.plot("q", other, "--out", self.folder / "both"), "each of 2 runs has a figure of its own")
+
+    def test_a_run_off_the_axes_is_drawn_or_told(self):
+        rows = [{"run": name, "Shields number [1]": shields, "q_star [1]": rate, "error [1]": "0.1", "steady": "yes"}
+                for name, shields, rate in (("wild", "0.4", "7.0"), ("still", "0.03", "0.0"))]
+        figure = relation.figure_of(rows)
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        axes = figure.axes[0]
+        self.assertGreater(axes.get_xlim()[1], 0.4)
+        self.assertGreater(axes.get_ylim()[1], 7.1)
+        self.assertEqual(axes.get_title(loc="left"), "drawn at 0.001, because q* is less: still")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "scripts/plot_run.py"
+SCRIPT = ROOT / "scripts/compare_checkpoints.py"
 
 
 class Interpreter(unittest.TestCase):
@@ -29,7 +29,7 @@ class Interpreter(unittest.TestCase):
     def test_a_script_goes_on_in_the_python_that_has_what_it_needs(self):
         said = self.run_with(self.bare, THALWEG_PYTHON=sys.executable)
         self.assertEqual(said.returncode, 0, said.stderr)
-        self.assertIn("usage: plot_run.py", said.stdout)
+        self.assertIn("usage: compare_checkpoints.py", said.stdout)
 
     def test_a_python_without_it_is_tried_once_and_the_lack_is_named(self):
         # The bare interpreter is all there is: in place of Debian's as well.
@@ -48,7 +48,7 @@ class Interpreter(unittest.TestCase):
     def test_help_is_all_that_happens(self):
         empty = self.folder / "empty"
         empty.mkdir()
-        for script in sorted(path for folder in ("scripts", "python/figures", "cases") for path in (ROOT / folder).rglob("*.py")):
+        for script in sorted(path for folder in ("scripts", "cases") for path in (ROOT / folder).rglob("*.py")):
             text = script.read_text(encoding="utf-8")
             if not text.startswith("#!/usr/bin/env python3"):
                 continue

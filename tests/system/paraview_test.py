@@ -4,13 +4,15 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import matplotlib.image
 import numpy as np
 
-import made_up_run
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import made_up_run  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PVPYTHON = os.environ.get("PVPYTHON") or shutil.which("pvpython")

@@ -2,7 +2,7 @@
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
 Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
-The table of these means is updated, and all its rows are drawn. python/figures/transport_relation.py draws
+The table of these means is updated, and all its rows are drawn. thalweg plot relation draws
 the runs against the Shields number.
 """
 import argparse

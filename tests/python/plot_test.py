@@ -1,11 +1,10 @@
-"""plot_run.py draws a run folder, and says in one sentence what is wrong with one it cannot draw."""
+"""thalweg plot all draws a run folder, and says in one sentence what is wrong with one it cannot draw."""
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
-import unittest.mock
 
 import h5py
 import matplotlib.image
@@ -13,15 +12,13 @@ import matplotlib.pyplot
 import numpy as np
 from PIL import Image
 
-import made_up_run
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "scripts" / "plot_run.py"
-sys.path[:0] = [str(SCRIPT.parent), str(ROOT / "tests/support")]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import made_up_profiles  # noqa: E402
-import plot_run  # noqa: E402
+import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
 from thalweg import drawing, height_profiles, transport  # noqa: E402
+from thalweg.figures import transport_rate  # noqa: E402
 
 # Stands in for ffmpeg: the size of a frame follows -s; what arrives is counted into the film.
 FFMPEG = """#!{python}
@@ -32,16 +29,19 @@ open(sys.argv[-1], "w").write(f"{{frames}} frames and {{rest}} bytes")
 """
 
 
-class PlotRun(unittest.TestCase):
+class Plot(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name) / "run"
         self.grains = made_up_run.write_run(self.folder)
 
-    def plot(self, *options, **environment):
-        return subprocess.run([sys.executable, SCRIPT, self.folder, *options], text=True, capture_output=True,
-                              env={**os.environ, **environment})
+    def plot(self, *options, kind="all", **environment):
+        return subprocess.run([sys.executable, "-B", "-m", "thalweg", "plot", kind, self.folder, *options], text=True,
+                              capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT / "python"), **environment})
+
+    def film(self, out, **environment):
+        return self.plot("--out", out, kind="film", **environment)
 
     def assert_drawn(self, path):
         """A picture of more than 400 pixels each way and of more than ten colours."""
@@ -84,14 +84,13 @@ class PlotRun(unittest.TestCase):
         made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", made_up_run.DIAMETER)
         with h5py.File(self.folder / "profiles.h5", "a") as file:
             file["grain_profiles/solid_fraction"][...] = 0.0
-        done = self.plot("--movie", self.folder / "film.gif")
+        done = self.plot()
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.split()[-1], str(self.folder / "film.gif"))
         self.assertFalse((self.folder / "profiles.png").exists())
 
     def test_a_film_has_every_frame(self):
         film = self.folder / "films" / "film.gif"
-        done = self.plot("--movie", film)
+        done = self.film(film)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.split()[-1], str(film))
         with Image.open(film) as pictures:
@@ -108,18 +107,18 @@ class PlotRun(unittest.TestCase):
         (self.folder / "grains.pvd").unlink()
         case = self.folder / "case.yaml"
         case.write_text("system: fluid\n" + case.read_text())
-        self.assertEqual(self.plot("--movie", self.folder / "film").returncode, 0)
+        self.assertEqual(self.film(self.folder / "film").returncode, 0)
         self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 1)
 
     def test_a_film_by_ffmpeg(self):
         ffmpeg, film = self.folder / "bin" / "ffmpeg", self.folder / "film.mp4"
         ffmpeg.parent.mkdir()
-        done = self.plot("--movie", film, PATH=str(ffmpeg.parent))
-        self.assertEqual(done.returncode, 1)
+        done = self.film(film, PATH=str(ffmpeg.parent))
+        self.assertEqual(done.returncode, 2)
         self.assertIn("ffmpeg is not installed", done.stderr)
         ffmpeg.write_text(FFMPEG.format(python=sys.executable))
         ffmpeg.chmod(0o755)
-        done = self.plot("--movie", film, PATH=str(ffmpeg.parent))
+        done = self.film(film, PATH=str(ffmpeg.parent))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(film.read_text(), "2 frames and 0 bytes")
 
@@ -196,11 +195,10 @@ class PlotRun(unittest.TestCase):
         rate[:20] = early
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n" +
                                                 "".join(f"{0.01 * n:g},{value}\n" for n, value in enumerate(rate)))
-        drawn, run = [], thalweg.Run(self.folder)
-        with unittest.mock.patch.object(plot_run, "save", lambda figure, path: drawn.append(figure)):
-            plot_run.draw_transport_rate(run, None)
-        self.addCleanup(matplotlib.pyplot.close, drawn[0])
-        return drawn[0].axes, rate, transport.transport(run)
+        run = thalweg.Run(self.folder)
+        figure = transport_rate.figure_of(run)
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        return figure.axes, rate, transport.transport(run)
 
     def test_the_transport_rate_is_drawn_whole_with_its_averaging_window(self):
         for early, panels in ((0.05, 1), (1.58, 2), (-0.3, 2)):   # a start that carries thirty times as much
@@ -219,21 +217,21 @@ class PlotRun(unittest.TestCase):
                 self.assertTrue(low <= rate[100:].min() and rate[100:].max() < high < 0.2)
 
     def test_axes_of_nothing(self):
-        self.assertEqual(plot_run.padded(np.zeros(3)), (0.0, 0.05))
+        self.assertEqual(transport_rate.padded(np.zeros(3)), (0.0, 0.05))
 
     def test_a_run_without_a_fluid_or_grain_pictures(self):
         (self.folder / "fluid.pvd").unlink()
         self.assertEqual(self.plot().returncode, 0)
         (self.folder / "grains.pvd").unlink()
         done = self.plot()
-        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.returncode, 2)
         self.assertIn("no picture of the grains", done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1)
 
     def test_a_folder_that_is_no_run(self):
         (self.folder / "case.yaml").unlink()
         done = self.plot()
-        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.returncode, 2)
         self.assertIn("no case.yaml", done.stderr)
 
 

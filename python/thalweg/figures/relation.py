@@ -1,24 +1,17 @@
-#!/usr/bin/env python3
-"""q* against the Shields number, as fig. 3(a) of Zhang et al. (2022): transport_relation.py [RUN_FOLDER...] [options]
+"""q* against the Shields number, as fig. 3(a) of Zhang et al. (2022).
 
 Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
 runs, whose means, standard errors (bars) and verdicts are those of run.log unless times are given. The Shields number of a
 run is that of its slope and its measured surface. Open symbols: not steady, or too short to tell. Prints the table.
 """
-import argparse
 import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-import thalweg_python
-
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-import thalweg
 from thalweg import bed, literature
+from thalweg.errors import RunFolderError
+from thalweg.run import Run
 from thalweg.tables import merged_rows
 from thalweg.transport import transport
 
@@ -28,10 +21,10 @@ VERDICTS = {True: "yes", False: "no", None: "too short"}
 
 def measure(folder, start, stop, surface):
     """Shields number, q* (Mean), steadiness and height of the bed over the diameter."""
-    run = thalweg.Run(folder)
+    run = Run(folder)
     found = transport(run, start, stop)
     if found.symbol != "q*":
-        raise thalweg.RunFolderError(f"{run.folder}: there is no q* of grains without a fluid.")
+        raise RunFolderError(f"{run.folder}: there is no q* of grains without a fluid.")
     time = (found.start, found.stop)
     if surface == "static":
         height = bed.static_bed_height(run, time[0], time[-1])
@@ -39,7 +32,7 @@ def measure(folder, start, stop, surface):
         height = bed.bed_height(run)
     elif "grain_profiles" in run.profiles and not len(run.grains.between(time[0], time[-1])):
         height = bed.bed_height(run)
-        print(f"transport_relation: {folder} has no frames: the height of its bed is the mean from "
+        print(f"thalweg: {folder} has no frames: the height of its bed is the mean from "
               f"{run.averaged_from('grain_profiles'):g} s to its end, not of the time of q*.", file=sys.stderr)
     else:
         height = bed.bed_height(run, time[0], time[-1])
@@ -80,38 +73,41 @@ def draw_runs(axes, rows):
                       mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="*", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--from", dest="start", type=float, help="s, beginning of the means (default: as in the case)")
-    parser.add_argument("--to", dest="stop", type=float, help="s, their end (default: that of the run)")
-    parser.add_argument("--surface", choices=("fraction", "static"), default="fraction",
-                        help="of the bed: half its solid fraction, or the paper's static pixels")
-    parser.add_argument("--table", help="of the points, which is brought up to date; all that it has are drawn")
-    parser.add_argument("--out", default="transport_relation.png")
-    arguments = parser.parse_args()
-    try:
-        found = [measure(folder, arguments.start, arguments.stop, arguments.surface) for folder in arguments.runs]
-    except thalweg.RunFolderError as error:
-        print(f"transport_relation: {error}", file=sys.stderr)
-        return 1
-    if found:
-        print("| run | Shields number | bed [d] | q* | error | deviation | independent values | steady |")
-        print("|---|---|---|---|---|---|---|---|")
-    for folder, (shields, rate, steady, height) in zip(arguments.runs, found):
+def print_table(folders, found):
+    print("| run | Shields number | bed [d] | q* | error | deviation | independent values | steady |")
+    print("|---|---|---|---|---|---|---|---|")
+    for folder, (shields, rate, steady, height) in zip(folders, found):
         print(f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} | {rate.deviation:.4f} | "
               f"{rate.independent:.0f} | {VERDICTS[steady]} |")
+
+
+def below_the_axis(rows):
+    """A remark on the runs that stand on the axis because their q* is below it; empty where there is none."""
+    low = [row["run"] for row in rows if float(row["q_star [1]"]) < SMALLEST]
+    return f"drawn at {SMALLEST:g}, because q* is less: {', '.join(low)}" if low else ""
+
+
+def figure_of(rows):
+    """rows: of the table of runs, as row_of() makes them."""
     figure, axes = plt.subplots(figsize=(9, 4.8), layout="constrained")
     draw_literature(axes)
     draw_paper(axes)
-    draw_runs(axes, merged_rows(arguments.table, [row_of(folder, *one) for folder, one in zip(arguments.runs, found)]))
-    axes.set(xlabel="Shields number", ylabel="q*", xlim=(0.015, 0.15), ylim=(SMALLEST, 1.0))
+    draw_runs(axes, rows)
+    shields = [float(row["Shields number [1]"]) for row in rows]
+    tops = [float(row["q_star [1]"]) + float(row["error [1]"]) for row in rows]
+    tops = [top for top in tops if np.isfinite(top)]
+    axes.set(xlabel="Shields number", ylabel=r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$",
+             xlim=(min([0.015] + [0.9 * value for value in shields]), max([0.15] + [1.1 * value for value in shields])),
+             ylim=(SMALLEST, max([1.0] + [1.3 * top for top in tops])))
+    axes.set_title(below_the_axis(rows), fontsize=8, loc="left")
     axes.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     axes.grid(color="#e5e8ea", linewidth=0.8)
-    figure.savefig(arguments.out, dpi=130)
-    print(arguments.out)
-    return 0
+    return figure
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def draw(folders, start, stop, surface, table):
+    """The figure of these runs, after the printed table; start, stop: of the means, s, or None; table: a file, or None."""
+    found = [measure(folder, start, stop, surface) for folder in folders]
+    if found:
+        print_table(folders, found)
+    return figure_of(merged_rows(table, [row_of(folder, *one) for folder, one in zip(folders, found)]))

@@ -74,7 +74,7 @@ def write_index(path, entries):
 
 
 def write_run(folder):
-    """Everything plot_run.py reads; returns the number of grains in the last picture."""
+    """Everything thalweg plot reads; returns the number of grains in the last picture."""
     generator = np.random.default_rng(7)
     (folder / "grains").mkdir(parents=True)
     (folder / "fluid").mkdir()

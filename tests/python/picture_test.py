@@ -1,4 +1,4 @@
-"""picture.py draws grains and flow in three dimensions without a screen, and says in one sentence what is missing."""
+"""thalweg plot picture draws grains and flow in three dimensions without a screen, and says in one sentence what is missing."""
 import os
 import pathlib
 import subprocess
@@ -9,9 +9,9 @@ import unittest
 import matplotlib.image
 import numpy as np
 
-import made_up_run
-
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "picture.py"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+import made_up_run  # noqa: E402
 
 
 def share(pixels, condition):
@@ -36,8 +36,8 @@ class Picture(unittest.TestCase):
         made_up_run.write_run(self.folder)
 
     def draw(self, *options):
-        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-        return subprocess.run([sys.executable, "-B", SCRIPT, self.folder, *options], text=True, capture_output=True,
+        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"} | {"PYTHONPATH": str(ROOT / "python")}
+        return subprocess.run([sys.executable, "-B", "-m", "thalweg", "plot", "picture", self.folder, *options], text=True, capture_output=True,
                               env=environment)
 
     def pixels(self, *options):
@@ -72,7 +72,7 @@ class Picture(unittest.TestCase):
             (self.folder / name).unlink()
             if words:
                 done = self.draw()
-                self.assertEqual(done.returncode, 1)
+                self.assertEqual(done.returncode, 2)
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
                 self.assertIn(words, done.stderr)
 

@@ -1,24 +1,14 @@
-#!/usr/bin/env python3
 """A picture of a run in three dimensions: the grains by radius, coloured by speed, in front of a slice of the flow.
-
-    picture.py RUN_FOLDER [--out FILE] [--time SECONDS] [--from X Y Z] [--size WIDTH HEIGHT]
 
 It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist, and solids. The
 slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a display of its own
 (Xvfb), so this also works where there is no screen.
 """
-import argparse
 import contextlib
 import os
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-import thalweg_python
-
-import matplotlib
 import numpy as np
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (what renders)
@@ -33,9 +23,8 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkGlyph3DMapper, vtkLightKit, vtkPolyDataMapper,
                                          vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
 
-matplotlib.use("Agg")
-import thalweg
 from thalweg import drawing
+from thalweg.errors import RunFolderError
 
 SCENE_WIDTH = 0.80   # share of the picture; the colour scales take the rest
 
@@ -45,7 +34,7 @@ def display():
     """Sets DISPLAY to that of an Xvfb while the context lasts; leaves it as it is where there is no Xvfb."""
     if not shutil.which("Xvfb"):
         if not os.environ.get("DISPLAY"):
-            raise thalweg.RunFolderError("there is neither Xvfb (package xvfb on Debian) nor a display to draw on.")
+            raise RunFolderError("there is neither Xvfb (package xvfb on Debian) nor a display to draw on.")
         yield
         return
     read, write = os.pipe()
@@ -56,7 +45,7 @@ def display():
         with os.fdopen(read) as answer:
             number = answer.readline().strip()
         if not number:
-            raise thalweg.RunFolderError("Xvfb does not start; try it by hand.")
+            raise RunFolderError("Xvfb does not start; try it by hand.")
         os.environ["DISPLAY"] = f":{number}"
         yield
     finally:
@@ -183,7 +172,7 @@ def pictured(run, time):
     grains = run.grains.nearest(time)
     fluid = run.fluid.nearest(grains.time if grains else time)
     if grains is None and fluid is None:
-        raise thalweg.RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
+        raise RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
     return grains, fluid
 
 
@@ -204,7 +193,7 @@ def scene(run, grains, fluid, far_side, font):
     if layer is not None:
         shown.append(("fluid speed", *slice_actor(fluid, layer, far_side)))
     if not shown:
-        raise thalweg.RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
+        raise RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
     for place, (title, actor, table) in enumerate(shown):
         view.AddActor(actor)
         margin.AddActor2D(scale_bar(table, title, place, font))
@@ -248,28 +237,9 @@ def write_picture(run, grains, fluid, path, direction, pixels):
     window.Finalize()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--out", type=Path, help="a .png (default: picture.png in the run folder)")
-    parser.add_argument("--time", type=float, help="simulated time in s (default: the last frames)")
-    parser.add_argument("--from", dest="direction", type=float, nargs=3, default=(-0.45, -1.0, 0.4), metavar=("X", "Y", "Z"),
-                        help="direction from which to look at the middle of the box")
-    parser.add_argument("--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="pixels")
-    arguments = parser.parse_args()
-    try:
-        run = thalweg.Run(arguments.run)
-        out = arguments.out or run.folder / "picture.png"
-        grains, fluid = pictured(run, arguments.time)
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with display():
-            write_picture(run, grains, fluid, out, arguments.direction, arguments.size)
-    except thalweg.RunFolderError as error:
-        print(f"picture: {error}", file=sys.stderr)
-        return 1
-    print(out)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def draw(run, path, time, direction, pixels):
+    """Writes a .png of the frames nearest to a time (s; None: the last). direction: from which to look; pixels: width and height."""
+    grains, fluid = pictured(run, time)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with display():
+        write_picture(run, grains, fluid, path, direction, pixels)

@@ -1,0 +1,21 @@
+"""Means of a fluid alone over the height."""
+import matplotlib.pyplot as plt
+
+from thalweg.height_profiles import GRID
+
+
+def figure_of(run):
+    """Mean velocity along x and Reynolds stresses against height."""
+    means = run.profiles["fluid_statistics"]
+    z, velocity, stress = 1e3 * means["z"], means["velocity"][:, 0], means["reynolds_stress"]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.8), sharey=True, constrained_layout=True)
+    left.plot(velocity, z, color="#14496e")
+    left.set(xlabel="mean velocity along x [m/s]", ylabel="z [mm]")
+    for column, label in ((0, "$u'u'$"), (1, "$v'v'$"), (2, "$w'w'$"), (4, "$u'w'$")):
+        right.plot(stress[:, column], z, label=label)
+    right.set(xlabel=r"Reynolds stress [m$^2$/s$^2$]")
+    right.legend(frameon=False, fontsize=9)
+    for axes in (left, right):
+        axes.grid(**GRID)
+    figure.suptitle(run.name, fontsize=11)
+    return figure

@@ -1,0 +1,1 @@
+"""`thalweg report`: one page that describes a run."""

@@ -1,0 +1,57 @@
+"""Figures that only the page has."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from thalweg.height_profiles import GRID
+
+# Columns of series.csv and what they are called, in the order in which they count.
+COURSE = {"moving_grains": "moving grains [1]", "largest_grain_speed": "largest grain speed [m/s]", "grain_kinetic_energy": "kinetic energy of the grains [J]",
+          "contacts": "contacts [1]", "mean_velocity_x": "mean velocity of the fluid [m/s]", "largest_fluid_speed": "largest fluid speed [m/s]",
+          "bed_stress": "stress on the bed [Pa]", "surface_height": "height of the bed [m]", "largest_overlap": "largest overlap"}
+MOST = 4   # panels
+
+
+def series_figure(run):
+    """Some columns of series.csv that change; None where there are none."""
+    series = run.series
+    if len(series["time"]) < 2:
+        return None
+    names = [name for name in COURSE if name in series and np.isfinite(series[name]).sum() > 1 and np.nanmax(np.abs(series[name])) > 0.0][:MOST]
+    if not names:
+        return None
+    rows = (len(names) + 1) // 2
+    figure, panels = plt.subplots(rows, min(2, len(names)), figsize=(9.0 if len(names) > 1 else 5.0, 2.3 * rows), squeeze=False, sharex=True,
+                                  layout="constrained")
+    for axes in panels.flat[len(names):]:
+        axes.remove()
+    for axes, name in zip(panels.flat, names):
+        axes.plot(series["time"], series[name], color="#14496e", lw=1.0)
+        unit = series.units[name]
+        label = COURSE[name] if "[" in COURSE[name] else f"{COURSE[name]} [{unit}]"
+        axes.set_title(label, fontsize=9, loc="left")
+        axes.set(xlabel="time [s]", ylim=(0.0, None) if np.nanmin(series[name]) >= 0.0 else None)
+        axes.grid(**GRID)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def column_figure(run):
+    """The column of system: continuum."""
+    column = run.profiles["continuum"]
+    z = 1e3 * column["z"]
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(9.0, 3.8), sharey=True, layout="constrained")
+    left.plot(column["solid_fraction"], z, "k-")
+    left.set(xlabel="solid fraction [1]", ylabel="z [mm]", xlim=(0.0, None))
+    for name, label, colour in (("grain_velocity", "grains", "#c0392b"), ("fluid_velocity", "fluid", "#14496e")):
+        middle.plot(column[name][:, 0], z, color=colour, label=label)
+    middle.set(xlabel="velocity along x [m/s]")
+    for name, label, style in (("grain_shear_stress", "grains", {"color": "#c0392b"}), ("fluid_shear_stress", "fluid", {"color": "#14496e"}),
+                               ("total_stress", "total", {"color": "k", "lw": 2.0}),
+                               ("driving_stress", "driving", {"color": "#e08e79", "ls": "--"})):
+        right.plot(column[name], z, label=label, **style)
+    right.set(xlabel="shear stress [Pa]")
+    for axes in (left, middle, right):
+        axes.grid(**GRID)
+    for axes in (middle, right):
+        axes.legend(fontsize=8, frameon=False)
+    return figure

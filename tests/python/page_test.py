@@ -1,0 +1,206 @@
+"""thalweg report makes one page of a run of every kind that needs nothing beside it, and says what the run says."""
+import html.parser
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
+import made_up_profiles  # noqa: E402
+import made_up_run  # noqa: E402
+import thalweg  # noqa: E402
+from thalweg.page.history import sessions_of, settings_in, warnings_of  # noqa: E402
+from thalweg.page.sections import page_of  # noqa: E402
+
+LOG = """Thalweg 0.1.0 (aaa): Made up
+resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 100 steps to 1 s
+writing run
+warning: The step is <long>.
+t 0.5       of 1 s    50 %  left 1 s   9 steps/s  warning: 3 grains overlap
+not finished, stopped by SIGTERM: at 0.5 s; to go on: the same command with --restart run
+Thalweg 0.1.0 (bbb): Made up
+resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 200 steps to 2 s
+going on from run/checkpoints/step_50.h5 at 0.5 s
+changed since then: run.until: 1 -> 2
+warning: The step is <long>.
+"""
+VOID = {"meta", "img", "br"}
+
+
+class Page(html.parser.HTMLParser):
+    """Checks that the tags are nested, and gathers headings, links to elsewhere and text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.sections, self.elsewhere, self.pictures, self.words = [], [], [], 0, []
+        self.feed(text)
+        self.close()
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        for name in ("src", "href"):
+            if name in attributes and not attributes[name].startswith("data:image/png;base64,"):
+                self.elsewhere.append(attributes[name])
+        self.pictures += tag == "img"
+        if tag in ("script", "link", "iframe"):
+            self.elsewhere.append(tag)
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, (tag, self.open)
+        self.open.pop()
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "h2":
+            self.sections.append(data)
+        if self.open and self.open[-1] != "style":
+            self.words.append(data)
+
+    @property
+    def text(self):
+        return re.sub(r"\s+", " ", " ".join(self.words))
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name) / "run"
+        made_up_run.write_run(self.folder)
+        (self.folder / "run.log").write_text(LOG)
+
+    def case(self, *replacements, head=""):
+        path = self.folder / "case.yaml"
+        text = path.read_text()
+        for old, new in replacements:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        path.write_text(head + text)
+
+    def page(self):
+        return Page(page_of(thalweg.Run(self.folder)))
+
+    def test_a_bed_that_is_not_finished(self):
+        self.case(head="# command thalweg run x.yaml --out run --set fluid.time_step=1e-05 --until 2\n# version 0.1.0\n")
+        page = self.page()
+        self.assertEqual(page.elsewhere, [])
+        for title in ("Picture", "Transport", "Warnings", "Case, as it was run", "Provenance", "How to repeat it"):
+            self.assertIn(title, page.sections)
+        self.assertNotIn("Where the time went", page.sections)   # no summary yet
+        for words in ("it is still going, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2", "The step is <long>.",
+                      "3 grains overlap (at 0.5 s)", "0.1.0 (aaa)", "--resume", "standard error"):
+            self.assertIn(words, page.text)
+        self.assertEqual(page.text.count("The step is <long>."), 1)   # of two sessions
+
+    def test_a_run_that_ended(self):
+        phases = {"links": {"mean_seconds": 30.0, "largest_seconds": 31.0, "share": 0.75},
+                  "sweep": {"mean_seconds": 10.0, "largest_seconds": 11.0, "share": 0.25}}
+        summary = {"finished": True, "reason": "", "simulated_time": 2.0, "until": 2.0, "version": "0.1.0 (bbb)", "ranks": 2, "wall_seconds": 40.0,
+                   "steps_in_this_session": 100, "steps_per_second": 2.5, "phases": phases,
+                   "bed": {"porosity": 0.4, "bed_height": 0.0123}, "units": {"bed_height": "m", "porosity": "1"}}
+        for finished, words in ((True, "Finished at 2 s."), (False, "Not finished, stopped by thalweg stop: at 2 of 2 s.")):
+            summary |= {"finished": finished, "reason": "" if finished else "stopped by thalweg stop"}
+            (self.folder / "summary.json").write_text(json.dumps(summary))
+            page = self.page()
+            self.assertIn(words, page.text)
+            self.assertRegex(page.text, r"links 30\.00 31\.00 75\.0 %")
+            self.assertRegex(page.text, r"height of the bed 0\.0123 m")
+            self.assertIn("mpirun -n 2 thalweg run", page.text)
+            self.assertEqual("--resume" in page.text, not finished)
+
+    def test_the_balance_of_stresses(self):
+        diameter = made_up_run.DIAMETER
+        self.case(head=f"fluid: {{density: 1000}}\ngravity: {{magnitude: 9.8, slope: 0.06}}\ngrains: [{{diameter: {diameter}, density: 2550}}]\n")
+        made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", diameter)
+        made_up_profiles.add_stress_balance(self.folder / "profiles.h5", diameter)
+        page = self.page()
+        self.assertIn("Profiles", page.sections)
+        # Total and driving stress are 1 Pa everywhere, and side walls take 1 Pa: the gap is all of it, and the driving stress is nought.
+        self.assertIn("The balance of stresses has not been measured yet.", page.text)
+        import h5py
+        with h5py.File(self.folder / "profiles.h5", "a") as file:
+            file["stress_balance/side_wall_stress"][...] = 0.75
+        self.assertIn("by 0.75 Pa at most, 3e+02 % of its largest value", self.page().text)
+
+    def test_a_fluid_alone(self):
+        self.case(("transport_rate: {from: 1.0}", "fluid_statistics: {from: 0}"), head="system: fluid\n")
+        (self.folder / "grains.pvd").unlink()
+        (self.folder / "series.csv").write_text("time [s],largest_fluid_speed [m/s]\n0,1\n1,2\n")
+        page = self.page()
+        self.assertNotIn("Transport", page.sections)
+        self.assertIn("Course of the run", page.sections)
+        self.assertEqual(page.pictures, 2)
+
+    def test_a_continuum(self):
+        import h5py
+        self.case(head="system: continuum\n")
+        for name in ("grains.pvd", "fluid.pvd"):
+            (self.folder / name).unlink()
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            for name in ("z", "solid_fraction", "grain_shear_stress", "fluid_shear_stress", "total_stress", "driving_stress"):
+                file[f"continuum/{name}"] = np.linspace(0.0, 1.0, 5)
+            for name in ("grain_velocity", "fluid_velocity"):
+                file[f"continuum/{name}"] = np.ones((5, 3))
+        page = self.page()
+        self.assertNotIn("Picture", page.sections)
+        self.assertIn("Profiles", page.sections)
+
+    def test_a_run_with_nothing_yet(self):
+        for path in self.folder.iterdir():
+            if path.name != "case.yaml":
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+        page = self.page()
+        self.assertIn("Left out: ", page.text)
+        self.assertEqual(page.pictures, 0)
+
+    def test_the_command(self):
+        done = subprocess.run([sys.executable, "-B", "-m", "thalweg", "report", self.folder], text=True, capture_output=True,
+                              env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
+        self.assertEqual((done.returncode, done.stdout), (0, f"{self.folder / 'report.html'}\n"), done.stderr)
+        Page((self.folder / "report.html").read_text(encoding="utf-8"))
+
+    @unittest.skipUnless(shutil.which("chromium"), "needs chromium (package chromium on Debian)")
+    def test_a_browser_shows_it(self):
+        import matplotlib.image
+        (self.folder / "report.html").write_text(page_of(thalweg.Run(self.folder)), encoding="utf-8")
+        shot = self.folder / "shot.png"
+        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder / 'browser'}",
+                        "--window-size=1000,2400", f"--screenshot={shot}", (self.folder / "report.html").as_uri()], check=True,
+                       capture_output=True, timeout=100)
+        pixels = matplotlib.image.imread(shot)[..., :3]
+        np.testing.assert_array_equal(pixels[5, 5], 1.0)   # a white page with text and coloured grains on it
+        self.assertGreater(float((pixels.max(axis=2) < 0.4).mean()), 0.005)
+        self.assertGreater(float((pixels[..., 0] > pixels[..., 2] + 0.3).mean()), 0.005)
+
+
+class History(unittest.TestCase):
+    def test_sessions(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            self.assertEqual(sessions_of(folder), [])
+            (folder / "run.log").write_text(LOG)
+            first, second = sessions_of(folder)
+        self.assertEqual((first.version, second.version), ("0.1.0 (aaa)", "0.1.0 (bbb)"))
+        self.assertTrue(first.shape.startswith("resolved on 2 ranks") and second.shape.endswith("to 2 s"))
+        self.assertEqual(second.origin, "run/checkpoints/step_50.h5 at 0.5 s")
+        self.assertTrue(first.outcome.startswith("not finished, stopped by SIGTERM"))
+        self.assertEqual(second.outcome, "")
+        self.assertEqual(warnings_of([first, second]), ["The step is <long>.", "3 grains overlap (at 0.5 s)"])
+
+    def test_settings(self):
+        self.assertEqual(settings_in("thalweg run a.yaml --set 'domain.size=[1, 2]' --set=x=1 --until 3 --out --until=4"),
+                         ["domain.size=[1, 2]", "x=1", "run.until=3", "run.until=4"])
+
+
+if __name__ == "__main__":
+    unittest.main()
