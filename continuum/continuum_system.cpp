@@ -2,8 +2,8 @@
 
 #include "core/base/error.hpp"
 #include "core/base/round_off.hpp"
-#include "core/parallel/mpi_session.hpp"
 #include "core/state/same_time_step.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -301,11 +301,7 @@ void ContinuumSystem::save(ArchiveWriter& archive) const {
   archive.attribute("column/transport_change", transport_change_);
   archive.attribute("column/momentum_change", momentum_change_);
   archive.attribute("column/integrator_steps", integrator_steps_);
-  const bool first = rank_of(communicator_) == 0;
-  const std::vector<std::uint64_t> shape{unknowns_.size()}, nothing{0};
-  const std::vector<double> none;
-  archive.write("column/unknowns", std::span<const double>(first ? unknowns_ : none),
-                {shape, nothing, first ? shape : nothing});
+  write_whole(archive, communicator_, "column/unknowns", std::span<const double>(unknowns_), {unknowns_.size()});
 }
 
 void ContinuumSystem::load(ArchiveReader& archive) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double near_in_cells = 2.0;
 constexpr std::size_t most_named = 4;
 
-// Ids of all grains with a surface near a position (m), in rising order.
+// Ids, ascending, of all grains with a surface near a position (m).
 std::vector<GlobalId> grains_near(MPI_Comm communicator, const Vec3& position, const Snapshot& snapshot) {
   const PeriodicBox& box = snapshot.decomposition->box();
   const double reach = near_in_cells * snapshot.decomposition->spacing();
@@ -39,14 +39,14 @@ std::string listed(const std::vector<GlobalId>& ids) {
 
 }  // namespace
 
-std::string location_text(MPI_Comm communicator, const Location& place, const Snapshot& snapshot) {
+std::string location_text(MPI_Comm communicator, const Location& location, const Snapshot& snapshot) {
   const std::string point =
-      fmt::format("at ({:.6g}, {:.6g}, {:.6g}) m", place.position.x(), place.position.y(), place.position.z());
-  if (!place.grains.empty())
-    return fmt::format("grain{} {} {}", place.grains.size() > 1 ? "s" : "", listed(place.grains), point);
+      fmt::format("at ({:.6g}, {:.6g}, {:.6g}) m", location.position.x(), location.position.y(), location.position.z());
+  if (!location.grains.empty())
+    return fmt::format("grain{} {} {}", location.grains.size() > 1 ? "s" : "", listed(location.grains), point);
   std::string text = "in the cell " + point;
   if (snapshot.grains.global_count == 0) return text;
-  const std::vector<GlobalId> near = grains_near(communicator, place.position, snapshot);
+  const std::vector<GlobalId> near = grains_near(communicator, location.position, snapshot);
   if (near.empty()) return text + ", in open water";
   return text + (near.size() == 1 ? ", beside grain " : ", in the pore between grains ") + listed(near);
 }

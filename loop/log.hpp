@@ -1,4 +1,4 @@
-// What the program prints: lines on standard output and, once a run folder exists, the same lines in run.log.
+// Log: lines on standard output and, once a run folder exists, also in run.log.
 #pragma once
 
 #include <fstream>

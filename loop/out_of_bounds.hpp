@@ -1,4 +1,4 @@
-// What to do with a run whose diagnostics leave their bounds.
+// Reaction to diagnostics that leave their bounds.
 #pragma once
 
 namespace thalweg::loop {

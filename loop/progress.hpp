@@ -1,4 +1,4 @@
-// The line a person watches while a run goes on: once a second at first, every ten minutes after an hour.
+// Progress line: once a second at first, every ten minutes after half an hour.
 #pragma once
 
 #include "core/state/system.hpp"
@@ -20,15 +20,15 @@ struct ProgressState {
 };
 
 // e.g. "t 1.2345 of 3 s   41 %   left 1:23   812 steps/s   12.3 MLUPS   moving 23   q* 0.0123   u_max 0.081"
-// Of the diagnostics it shows moving_grains, q_star and largest_lattice_velocity, as far as they are there; a notice
-// comes last: "warning: mean_density_deviation -0.0031".
+// It shows the diagnostics moving_grains, q_star and largest_lattice_velocity where they exist, and last a notice:
+// "warning: mean_density_deviation -0.0031".
 std::string progress_line(const ProgressState& state);
 
-// s of wall time from a progress line at `now` s after the begin of the run to the next: often at first, when somebody
-// is watching, and a few hundred lines in a run of days.
+// Wall time (s) from a progress line at `now` (s after the start of the run) to the next: short at first, and long
+// enough for a few hundred lines in a run of days.
 double seconds_to_next_line(double now);
 
-// "59 s", "12:03" (minutes and seconds), "3:04:05", "2 d 03:04" (hours and minutes).
+// Duration as text: "59 s", "12:03" (minutes and seconds), "3:04:05", "2 d 03:04" (hours and minutes).
 std::string clock_text(double seconds);
 
 }  // namespace thalweg::loop

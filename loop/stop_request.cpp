@@ -35,12 +35,12 @@ void listen_for_stop_signals() {
   sigaction(SIGPIPE, &ignore, nullptr);
   continued = 0;
   action.sa_handler = note_continuation;
-  if (seconds_between_strokes() > 0.0) sigaction(SIGCONT, &action, nullptr);
+  if (sigcont_to_sigterm_delay() > 0.0) sigaction(SIGCONT, &action, nullptr);
 }
 
 int received_stop_signal() { return received; }
 
-double seconds_between_strokes() {
+double sigcont_to_sigterm_delay() {
   if (std::getenv("OMPI_COMM_WORLD_RANK") == nullptr) return 0.0;
   if (std::getenv("PRTE_LAUNCHED") != nullptr) return sigkill_timeout_of_prrte;
   const char* given = std::getenv("OMPI_MCA_odls_base_sigkill_timeout");
@@ -48,7 +48,7 @@ double seconds_between_strokes() {
   return seconds > 0.0 ? seconds : default_sigkill_timeout;
 }
 
-bool take_first_stroke() {
+bool consume_sigcont() {
   const bool came = continued != 0;
   continued = 0;
   return came;

@@ -21,28 +21,28 @@ namespace thalweg::loop {
 namespace {
 
 constexpr double seconds_between_decisions = 0.2;  // mpirun kills one second after its SIGTERM
-constexpr double seconds_a_stroke_may_be_late = 0.5;
-constexpr double most_of_the_time = 0.7;  // share of the time after a signal that a checkpoint may take
+constexpr double longest_signal_delay = 0.5;
+constexpr double most_of_the_time = 0.7;  // share of the time between signal and kill that a checkpoint may take
 constexpr std::int64_t most_steps_between_decisions = 100000;
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
 
-// SIGUSR1 and SIGUSR2 are passed on by mpirun, and nothing follows.
+// False for SIGUSR1 and SIGUSR2, which mpirun passes on to the ranks and does not follow up.
 bool is_followed_by_a_kill(int signal) { return signal == SIGTERM || signal == SIGINT; }
 
-// Of such a diagnostic the smallest value is kept, not the largest.
+// True for a diagnostic of which the smallest value is kept.
 bool is_smallest(const Diagnostic& diagnostic) { return diagnostic.name.starts_with("smallest_"); }
 
-// Of such a diagnostic the value that is furthest from zero is kept, with its sign.
+// True for a diagnostic of which the value furthest from zero is kept, with its sign.
 bool is_bad_either_way(const Diagnostic& diagnostic, const std::vector<WatchRule>& rules) {
   return std::any_of(rules.begin(), rules.end(), [&diagnostic](const WatchRule& rule) {
     return rule.diagnostic == diagnostic.name && rule.side == WatchRule::Side::either;
   });
 }
 
-// Takes the request away, so that the run can go on later.
+// True if the file exists; removes it, so that the run can be resumed later.
 bool was_asked_to_stop(const std::filesystem::path& file) {
   std::error_code ignored;
   return !file.empty() && std::filesystem::remove(file, ignored);
@@ -57,8 +57,7 @@ std::vector<Diagnostic> diagnostics_of(const std::vector<std::unique_ptr<analysi
 
 std::vector<Diagnostic> row_of(const std::vector<Diagnostic>& of_system, const std::vector<Diagnostic>& measured) {
   std::vector<Diagnostic> row = of_system;
-  for (const Diagnostic& diagnostic : measured)
-    if (!find_diagnostic(of_system, diagnostic.name)) row.push_back(diagnostic);
+  row.insert(row.end(), measured.begin(), measured.end());
   return row;
 }
 
@@ -69,7 +68,7 @@ std::vector<Diagnostic> series_row(const System& system,
   return row_of(system.diagnostics(), diagnostics_of(observers));
 }
 
-// Rounded up, except where the quotient misses a whole number of steps by round-off only.
+// Rounded up, unless the quotient exceeds a whole number of steps by round-off only.
 std::int64_t final_step(double until, double time_step) {
   return whole_steps(std::ceil(until / time_step * (1.0 - rounding_of_the_end)));
 }
@@ -103,26 +102,27 @@ void TimeLoop::run() {
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
     record_.wall_seconds = seconds_since(begin_);
-    if (system_.step() % steps_between_health_checks == 0) look_at_health(true);
+    if (system_.step() % steps_between_health_checks == 0) check_health(true);
     write_what_is_due();
     if (plan_.checkpoint.due(system_.step())) checkpoint();
     if (system_.step() >= next_decision_) decision = decide_together();
-    // At the same step on any ranks and after any restart.
-    if (system_.step() % plan_.steps_between_looks_for_enough == 0 && has_enough()) decision = Decision::enough;
+    // The same step on any number of ranks and after any restart.
+    if (system_.step() % plan_.steps_between_convergence_checks == 0 && stop_criteria_hold())
+      decision = Decision::converged;
   }
-  look_at_health();
+  check_health();
   checkpoint();
   count_among_largest();
   if (log_.prints() && printed_step_ != system_.step()) report(seconds_since(begin_));
-  if (decision == Decision::enough) record_.early = plan_.enough_means;
-  record_.finished = decision == Decision::enough || system_.step() >= final_step_;
+  if (decision == Decision::converged) record_.early = plan_.stop_criteria_meaning;
+  record_.finished = decision == Decision::converged || system_.step() >= final_step_;
   if (record_.finished) record_.reason.clear();
   record_.wall_seconds = seconds_since(begin_);
 }
 
-void TimeLoop::look_at_health(bool is_regular) {
-  if (looked_at_step_ == system_.step()) return;
-  looked_at_step_ = system_.step();
+void TimeLoop::check_health(bool is_regular) {
+  if (checked_step_ == system_.step()) return;
+  checked_step_ = system_.step();
   const auto scope = timer_.measure(timer_.phase("figures"));
   record_.diagnostics = system_.diagnostics();
   if (record_.largest.empty()) begin_largest();
@@ -170,31 +170,31 @@ void TimeLoop::measure() {
   const std::int64_t step = system_.step();
   const auto due = [step](const Schedule& schedule) { return schedule.due(step); };
   if (std::none_of(schedules_.begin(), schedules_.end(), due)) return;
-  bool in_passing = true;
+  bool is_lightweight = true;
   for (std::size_t o = 0; o < observers_.size(); ++o)
-    if (due(schedules_[o]) && !observers_[o]->in_passing()) in_passing = false;
-  if (!in_passing) look_at_health();
+    if (due(schedules_[o]) && !observers_[o]->is_lightweight()) is_lightweight = false;
+  if (!is_lightweight) check_health();
   const auto scope = timer_.measure(timer_.phase("observers"));
   const Snapshot snapshot = system_.snapshot();
   for (std::size_t o = 0; o < observers_.size(); ++o)
     if (due(schedules_[o])) observers_[o]->observe(snapshot);
 }
 
-bool TimeLoop::has_enough() {
-  if (plan_.enough.empty()) return false;
-  look_at_health();
-  const auto below = [this](const DiagnosticLimit& limit) {
+bool TimeLoop::stop_criteria_hold() {
+  if (plan_.stop_criteria.empty()) return false;
+  check_health();
+  const auto below = [this](const StopCriterion& limit) {
     const std::optional<double> value = find_diagnostic(record_.diagnostics, limit.diagnostic);
     return value && *value < limit.limit;
   };
-  return std::all_of(plan_.enough.begin(), plan_.enough.end(), below);
+  return std::all_of(plan_.stop_criteria.begin(), plan_.stop_criteria.end(), below);
 }
 
 void TimeLoop::write_what_is_due() {
   const std::int64_t step = system_.step();
   measure();
   if (plan_.series.due(step)) {
-    look_at_health();
+    check_health();
     measured_ = diagnostics_of(observers_);
     if (plan_.write_row) {
       const auto scope = timer_.measure(timer_.phase("series"));
@@ -203,7 +203,7 @@ void TimeLoop::write_what_is_due() {
   }
   for (const OutputTask& output : plan_.outputs) {
     if (!output.schedule.due(step)) continue;
-    look_at_health();
+    check_health();
     const auto scope = timer_.measure(timer_.phase(output.phase));
     output.act(system_.snapshot());
   }
@@ -211,7 +211,7 @@ void TimeLoop::write_what_is_due() {
 
 void TimeLoop::checkpoint() {
   if (!plan_.write_checkpoint || saved_step_ == system_.step()) return;
-  look_at_health();  // a broken state must not replace a good checkpoint
+  check_health();  // a broken state must not replace a good checkpoint
   const WallClock::time_point before = WallClock::now();
   std::uint64_t bytes = 0;
   {
@@ -221,7 +221,7 @@ void TimeLoop::checkpoint() {
   const double seconds = seconds_since(before);
   if (saved_step_ < 0)
     log_.line(fmt::format("first checkpoint: {:.1f} MB in {:.2g} s", static_cast<double>(bytes) * 1e-6, seconds));
-  if (const double left = 2.0 * plan_.between_strokes;
+  if (const double left = 2.0 * plan_.sigcont_to_sigterm_delay;
       left > 0.0 && seconds > most_of_the_time * left && longest_checkpoint_ <= most_of_the_time * left)
     log_.line(
         fmt::format("warning: this checkpoint took {:.2g} s, and mpirun kills the ranks {:.2g} s after Ctrl-C or "
@@ -243,7 +243,7 @@ std::int64_t TimeLoop::steps_to_next_decision(double now) const {
                                   std::min(2 * done, most_steps_between_decisions));
 }
 
-// s of the wall time, less what `checkpoints` (s) and the steps up to the decision after this one take.
+// Wall time (s) that is left after `checkpoints` (s) and the steps up to the decision after this one.
 double TimeLoop::time_left(double checkpoints) const {
   if (plan_.walltime <= 0.0) return std::numeric_limits<double>::infinity();
   const double now = seconds_since(begin_);
@@ -252,26 +252,26 @@ double TimeLoop::time_left(double checkpoints) const {
   return plan_.walltime - seconds_since(plan_.started) - reserve;
 }
 
-// Of rank 0, by the clock and the file.
+// Decision of rank 0, by the clock and the stop file.
 std::int64_t TimeLoop::own_decision() {
   if (was_asked_to_stop(plan_.stop_file)) return static_cast<int>(Decision::asked);
   const bool is_up = time_left(3.0 * longest_checkpoint_) < 0.0;
   return static_cast<int>(is_up ? Decision::wall_time_is_up : Decision::go_on);
 }
 
-// Of rank 0. What the first checkpoint takes is not known before it is written: then there must be time for it and for
-// the last one.
+// True on rank 0 if a checkpoint is due by wall time. The time of the first checkpoint is unknown until it is written,
+// so there must be time for it and for the last one.
 bool TimeLoop::wants_checkpoint(double now) const {
   if (plan_.checkpoint_wall > 0.0 && now - saved_at_ >= plan_.checkpoint_wall) return true;
   return saved_step_ < 0 && time_left(2.0 * plan_.checkpoint_guess) < 0.0;
 }
 
 TimeLoop::Decision TimeLoop::decide_together() {
-  // Only rank 0 looks at the clock; all ranks may have seen a signal. One reduction settles everything.
-  enum { decision, signal, stroke, print, save, steps, items };
+  // Only rank 0 reads the clock; any rank may have received a signal. One reduction combines the votes.
+  enum { decision, signal, sigcont, print, save, steps, items };
   std::array<std::int64_t, items> votes{};
   votes[signal] = received_stop_signal();
-  votes[stroke] = take_first_stroke() ? 1 : 0;
+  votes[sigcont] = consume_sigcont() ? 1 : 0;
   const double now = seconds_since(begin_);
   if (rank_of(communicator_) == 0) {
     votes[decision] = own_decision();
@@ -295,28 +295,28 @@ TimeLoop::Decision TimeLoop::decide_together() {
   if (agreed == Decision::wall_time_is_up) record_.reason = "the wall time is nearly up";
   if (votes[print] != 0) report(now);
   if (votes[save] != 0) checkpoint();
-  if (agreed == Decision::go_on && votes[stroke] != 0) return decide_after_first_stroke();
+  if (agreed == Decision::go_on && votes[sigcont] != 0) return decide_after_sigcont();
   return agreed;
 }
 
-// Saves while there is time, and then waits for the second stroke. If none comes, the run goes on.
-TimeLoop::Decision TimeLoop::decide_after_first_stroke() {
-  const WallClock::time_point stroke = WallClock::now();
-  log_.line("SIGCONT, as mpirun sends it before it kills: saving" + danger_of_being_killed());
+// Saves while there is time, then waits for the signal that follows SIGCONT. If none comes, the run continues.
+TimeLoop::Decision TimeLoop::decide_after_sigcont() {
+  const WallClock::time_point sigcont = WallClock::now();
+  log_.line("SIGCONT (mpirun sends it before it kills the ranks): saving" + danger_of_being_killed());
   checkpoint();
   while (rank_of(communicator_) == 0 && received_stop_signal() == 0 &&
-         seconds_since(stroke) < plan_.between_strokes + seconds_a_stroke_may_be_late)
+         seconds_since(sigcont) < plan_.sigcont_to_sigterm_delay + longest_signal_delay)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return decide_together();
 }
 
-// For a line of the log; empty where there is none, as far as is known.
+// Appended to a log line; empty if no danger is known.
 std::string TimeLoop::danger_of_being_killed() const {
-  const double left = 2.0 * plan_.between_strokes;
+  const double left = 2.0 * plan_.sigcont_to_sigterm_delay;
   if (left <= 0.0 || longest_checkpoint_ < most_of_the_time * left) return "";
   return fmt::format(
-      ", which took up to {:.2g} s so far, and mpirun leaves {:.2g} s; if this checkpoint is lost, a restart goes on "
-      "from the one of step {}",
+      ", which took up to {:.2g} s so far, and mpirun leaves {:.2g} s; if this checkpoint is lost, restart from "
+      "the one of step {}",
       longest_checkpoint_, left, saved_step_);
 }
 

@@ -1,5 +1,4 @@
-// A diagnostic of the system that is watched while a run goes on: beyond which value it is suspicious, and beyond which
-// the run stops.
+// Rule of the watchdog: the values of a diagnostic beyond which it warns, and beyond which it stops the run.
 #pragma once
 
 #include "core/state/system.hpp"
@@ -11,21 +10,21 @@
 
 namespace thalweg::loop {
 
-// In the diagnostic's unit, of its badness (WatchRule::badness); infinite: never. warn is at most stop.
+// Limits of the badness (WatchRule::badness), in the diagnostic's unit; infinite: never. warn is at most stop.
 struct WatchLimits {
   double warn, stop;
 };
 
 struct WatchRule {
-  enum class Side { above, below, either };  // which values are bad: large ones, those far below zero, both
+  enum class Side { above, below, either };  // values that are bad: large, far below zero, or both
 
-  std::string diagnostic;  // its name; where the system has no such diagnostic, the rule does not apply
+  std::string diagnostic;  // name; the rule does not apply to a system without it
   Side side;
-  std::function<WatchLimits(const std::vector<Diagnostic>&)> limits;  // at a look, from all diagnostics of the system
+  std::function<WatchLimits(const std::vector<Diagnostic>&)> limits;  // from all diagnostics of the system
   std::string meaning;  // of the diagnostic, e.g. "the largest lattice velocity"
   std::string advice;   // likely cause and remedy, in whole sentences
 
-  // How bad a value is, to be compared with the limits: the value, its negative or its size.
+  // Badness of a value, to be compared with the limits: the value, its negative or its magnitude.
   double badness(double value) const {
     return side == Side::above ? value : side == Side::below ? -value : std::abs(value);
   }

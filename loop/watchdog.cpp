@@ -30,8 +30,8 @@ Watchdog::Watchdog(MPI_Comm communicator, const System& system, std::vector<Watc
 std::string Watchdog::moment() const { return fmt::format("{:.6g} s (step {})", system_.time(), system_.step()); }
 
 std::string Watchdog::location_of(const std::string& diagnostic) const {
-  const std::optional<Location> place = system_.location_of(diagnostic);
-  return place ? ", " + location_text(communicator_, *place, system_.snapshot()) : "";
+  const std::optional<Location> location = system_.location_of(diagnostic);
+  return location ? ", " + location_text(communicator_, *location, system_.snapshot()) : "";
 }
 
 std::vector<std::string> Watchdog::judge(const std::vector<Diagnostic>& diagnostics) {
@@ -39,7 +39,7 @@ std::vector<std::string> Watchdog::judge(const std::vector<Diagnostic>& diagnost
     if (!std::isfinite(diagnostic.value))
       throw RunError(fmt::format(
           "The run broke down before {}: {} is not a finite number{}. Shorten the time step, or restart from "
-          "an earlier checkpoint with a shorter output.series.every to see how it comes about.",
+          "an earlier checkpoint with a shorter output.series.every to see how it develops.",
           moment(), diagnostic.name, location_of(diagnostic.name)));
   std::vector<std::string> warnings;
   for (Watched& watched : watched_) {

@@ -1,8 +1,8 @@
-// Stops a run that is going wrong, and says so beforehand: compares the diagnostics of the system with the limits of
-// its rules whenever the time loop looks.
+// Watchdog: compares the diagnostics of the system with the limits of its rules at each health check of the time loop,
+// warns, and stops a run that goes wrong.
 //
-// A diagnostic beyond its first limit is worth a warning: once, and again whenever it has grown by half. Beyond the
-// second the run ends. A diagnostic that is not a finite number ends it in any case.
+// A diagnostic beyond its first limit gives a warning: once, and again whenever it has grown by half. Beyond the second
+// limit it ends the run. One that is not a finite number always ends it.
 #pragma once
 
 #include "core/state/system.hpp"
@@ -25,14 +25,14 @@ public:
   // limit, time, step, place, cause and remedy. Collective, the same on every rank.
   std::vector<std::string> judge(const std::vector<Diagnostic>& diagnostics);
 
-  // The diagnostics that were beyond their first limit when last judged, e.g. "mean_density_deviation -0.0031"; empty:
+  // Diagnostics that were beyond their first limit when last judged, e.g. "mean_density_deviation -0.0031"; empty:
   // none.
   std::string notice() const;
 
 private:
   struct Watched {
     WatchRule rule;
-    double warned = 0.0;  // the badness of the latest warning; 0: none so far
+    double warned = 0.0;  // badness of the latest warning; 0: none so far
     double value = 0.0;
     bool suspicious = false;
   };

@@ -24,7 +24,7 @@ public:
   virtual double every() const { return 0.0; }
 
   // True for one that may measure in every step: its measurements alone do not trigger a check of the system's health.
-  virtual bool in_passing() const { return false; }
+  virtual bool is_lightweight() const { return false; }
 
   // Whether it looks at Snapshot::momentum, which a system records when asked before the step.
   virtual bool needs_momentum() const { return false; }

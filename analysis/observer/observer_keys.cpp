@@ -14,11 +14,11 @@ void describe_every(SectionVisitor& visit, double& every) {
   visit.real("every", every, {.unit = "s", .meaning = "between measurements", .above = 0.0});
 }
 
-void require_grains(const RunFacts& run, const std::string& what) {
+void require_grains(const RunContext& run, const std::string& what) {
   if (!run.grains) throw KeyError("", fmt::format("there are no grains to {}; remove the section or add grains", what));
 }
 
-void require_ids(const RunFacts& run, const std::vector<GlobalId>& ids) {
+void require_ids(const RunContext& run, const std::vector<GlobalId>& ids) {
   require_grains(run, "watch");
   const GlobalId count = run.grains->count();
   for (std::size_t n = 0; n < ids.size(); ++n) {
@@ -31,7 +31,7 @@ void require_ids(const RunFacts& run, const std::vector<GlobalId>& ids) {
   }
 }
 
-void require_full_gravity_from(const RunFacts& run, double from) {
+void require_full_gravity_from(const RunContext& run, double from) {
   if (from < run.ramp)
     throw KeyError(
         "from", fmt::format("{} s is before gravity has its full value; give at least run.ramp, {} s", from, run.ramp));

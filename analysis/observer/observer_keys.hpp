@@ -7,18 +7,18 @@
 // and in the namespace of the observer
 //
 //   void describe(SectionVisitor& visit, Keys& keys);                             (core/keys/section_visitor.hpp)
-//   std::unique_ptr<Observer> make_observer(const Keys& keys, const RunFacts& run, const RunningSystem& system);
+//   std::unique_ptr<Observer> make_observer(const Keys& keys, const RunContext& run, const RunningSystem& system);
 //
 // and, where there is something to refuse or to warn of,
 //
-//   void check(const Keys& keys, const RunFacts& run);                            throws KeyError
-//   std::optional<std::string> warning(const Keys& keys, const RunFacts& run);    a sentence
+//   void check(const Keys& keys, const RunContext& run);                            throws KeyError
+//   std::optional<std::string> warning(const Keys& keys, const RunContext& run);    a sentence
 //
 // A new observer becomes known to the program by a line in observer_list.hpp.
 #pragma once
 
 #include "analysis/observer/observer.hpp"
-#include "analysis/observer/run_facts.hpp"
+#include "analysis/observer/run_context.hpp"
 #include "core/keys/key_error.hpp"
 #include "core/keys/section_visitor.hpp"
 
@@ -36,8 +36,8 @@ void describe_from(SectionVisitor& visit, double& from);
 void describe_every(SectionVisitor& visit, double& every);
 
 // Throw KeyError with a remedy. what: a verb for the message, "measure".
-void require_grains(const RunFacts& run, const std::string& what);
-void require_ids(const RunFacts& run, const std::vector<GlobalId>& ids);  // key grains: each is there, and named once
-void require_full_gravity_from(const RunFacts& run, double from);         // run.ramp is over then
+void require_grains(const RunContext& run, const std::string& what);
+void require_ids(const RunContext& run, const std::vector<GlobalId>& ids);  // key grains: each is there, and named once
+void require_full_gravity_from(const RunContext& run, double from);         // run.ramp is over then
 
 }  // namespace thalweg::analysis

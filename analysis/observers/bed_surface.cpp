@@ -1,5 +1,6 @@
 #include "analysis/observers/bed_surface.hpp"
 
+#include "analysis/tools/mean_observer.hpp"
 #include "core/state/whole_dataset.hpp"
 
 #include <algorithm>
@@ -44,20 +45,19 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
 }
 
 void BedSurface::observe(const Snapshot& snapshot) {
-  // A run that goes on from a checkpoint looks once more at the state the checkpoint holds.
+  // A restarted run measures the state of its checkpoint once more.
   const bool again = snapshot.step <= seen_step_;
   measure(snapshot);
   if (again) return;
   seen_step_ = snapshot.step;
-  const double from = keys_.from * (1.0 - 1e-12);
-  if (pixels_.look(snapshot) && pixels_.begun() >= from) {
+  if (pixels_.look(snapshot) && counts_from(keys_.from, pixels_.begun())) {
     ++pictures_;
     for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
       surface_sums_[c] += pixels_.surface()[c];
       surface_counts_[c] += StaticPixels::is_static(pixels_.surface()[c]) ? 1.0 : 0.0;
     }
   }
-  if (snapshot.time < from) return;
+  if (!counts_from(keys_.from, snapshot.time)) return;
   ++measurements_;
   std::size_t n = 0;
   for (const Diagnostic& diagnostic : diagnostics())
@@ -142,12 +142,9 @@ void BedSurface::save(ArchiveWriter& archive) const {
   archive.attribute("bed_surface/latest_bed_height", bed_height_);  // a row of the series may come before the next
   archive.attribute("bed_surface/latest_bulk", bulk_);
   archive.attribute("bed_surface/latest_bed_stress", bed_stress_);
-  const auto write = [&](const std::string& path, const std::vector<double>& values) {
-    write_whole(archive, communicator_, path, std::span<const double>(values), {values.size()});
-  };
-  write("bed_surface/sums", sums_);
-  write("bed_surface/surface_sums", surface_sums_);
-  write("bed_surface/surface_counts", surface_counts_);
+  write_whole(archive, communicator_, "bed_surface/sums", sums_);
+  write_whole(archive, communicator_, "bed_surface/surface_sums", surface_sums_);
+  write_whole(archive, communicator_, "bed_surface/surface_counts", surface_counts_);
   pixels_.save(archive, "bed_surface");
 }
 
@@ -165,12 +162,9 @@ bool BedSurface::load(ArchiveReader& archive) {
   bulk_ = archive.real_attribute("bed_surface/latest_bulk");
   if (archive.has("bed_surface/latest_bed_stress"))  // older checkpoints have none
     bed_stress_ = archive.real_attribute("bed_surface/latest_bed_stress");
-  const auto read = [&](const std::string& path, std::vector<double>& values) {
-    archive.read(path, std::span<double>(values), {{values.size()}, {0}, {values.size()}});
-  };
-  read("bed_surface/sums", sums_);
-  read("bed_surface/surface_sums", surface_sums_);
-  read("bed_surface/surface_counts", surface_counts_);
+  sums_ = read_whole<double>(archive, "bed_surface/sums");
+  surface_sums_ = read_whole<double>(archive, "bed_surface/surface_sums");
+  surface_counts_ = read_whole<double>(archive, "bed_surface/surface_counts");
   pixels_.load(archive, "bed_surface");
   return true;
 }
@@ -192,7 +186,7 @@ void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {
              {.unit = "s", .meaning = "a pixel is static after one grain has covered it for this long", .above = 0.0});
 }
 
-void check(const BedSurfaceKeys&, const RunFacts& run) {
+void check(const BedSurfaceKeys&, const RunContext& run) {
   require_grains(run, "measure");
   if (run.box.periodic[2])
     throw KeyError("",
@@ -200,7 +194,7 @@ void check(const BedSurfaceKeys&, const RunFacts& run) {
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
 }
 
-std::optional<BedFlow> bed_flow(const RunFacts& run) {
+std::optional<BedFlow> bed_flow(const RunContext& run) {
   if (!run.fluid) return std::nullopt;
   BedFlow flow;
   flow.side_walls = run.fluid->side_walls;
@@ -213,7 +207,8 @@ std::optional<BedFlow> bed_flow(const RunFacts& run) {
   return flow;
 }
 
-std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system) {
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunContext& run,
+                                        const RunningSystem& system) {
   return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
                                       run.grains->disk_thickness, run.grains->obstacles);
 }

@@ -42,8 +42,8 @@ struct BedSurfaceKeys {
   bool operator==(const BedSurfaceKeys&) const = default;
 };
 void describe(SectionVisitor& visit, BedSurfaceKeys& keys);
-void check(const BedSurfaceKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunFacts& run, const RunningSystem& system);
+void check(const BedSurfaceKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunContext& run, const RunningSystem& system);
 
 // The flow over the bed; none for dry grains.
 struct BedFlow {

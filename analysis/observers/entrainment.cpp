@@ -1,5 +1,6 @@
 #include "analysis/observers/entrainment.hpp"
 
+#include "analysis/tools/mean_observer.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/ranks.hpp"
 
@@ -17,7 +18,7 @@ Entrainment::Entrainment(MPI_Comm communicator, const PeriodicBox& box, Entrainm
       layers_(communicator, box, settings_.window, 0.0, settings_.obstacles) {}
 
 void Entrainment::observe(const Snapshot& snapshot) {
-  if (snapshot.step <= seen_step_ || snapshot.time < settings_.from * (1.0 - 1e-12)) return;
+  if (snapshot.step <= seen_step_ || !counts_from(settings_.from, snapshot.time)) return;
   seen_step_ = snapshot.step;
   if (!homes_) {
     homes_.emplace(communicator_, snapshot.grains.global_count);

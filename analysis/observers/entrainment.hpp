@@ -10,14 +10,14 @@
 // for events with a hinge and a torque of the fluid that pushes the way the grain went. Events count as independent:
 // the error of the mean share is its deviation over sqrt(events).
 //
-// What is remembered, and which grains are watched, lies at the home of the grain's id (home_by_id.hpp).
+// What is remembered, and which grains are watched, lies at the home of the grain's id (distribution_by_id.hpp).
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/observers/entrainment_event.hpp"
 #include "analysis/tools/bed_layers.hpp"
+#include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/grain_ring.hpp"
-#include "analysis/tools/home_by_id.hpp"
 #include "analysis/tools/saved_settings.hpp"
 #include "analysis/tools/watched_here.hpp"
 
@@ -42,8 +42,9 @@ struct EntrainmentKeys {
   bool operator==(const EntrainmentKeys&) const = default;
 };
 void describe(SectionVisitor& visit, EntrainmentKeys& keys);
-void check(const EntrainmentKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFacts& run, const RunningSystem& system);
+void check(const EntrainmentKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunContext& run,
+                                        const RunningSystem& system);
 
 // The same for a run: the ids ascending, and what follows from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
@@ -54,8 +55,8 @@ struct EntrainmentSettings : EntrainmentKeys {
   double moving_speed = 0.0;        // m/s
   std::vector<HeldGrains> held;     // grains that cannot move
   std::vector<GlobalId> obstacles;  // as BedLayers has them
-  GrainFacts::Force weight;         // submerged
-  GrainFacts::Force buoyancy;       // as torques_about() has it
+  GrainContext::Force weight;       // submerged
+  GrainContext::Force buoyancy;     // as torques_about() has it
 };
 
 class Entrainment : public Observer {
@@ -64,7 +65,7 @@ public:
 
   std::string name() const override { return "entrainment"; }
   double every() const override { return settings_.interval; }
-  bool in_passing() const override { return true; }
+  bool is_lightweight() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // watched_grains, entrainments (1: so far).
@@ -130,7 +131,7 @@ private:
   PeriodicBox box_;
   EntrainmentSettings settings_;
   BedLayers layers_;
-  std::optional<HomeById> homes_;  // from the first measurement on
+  std::optional<DistributionById> homes_;  // from the first measurement on
   WatchedHere watched_here_;
   std::int64_t watched_count_ = 0;  // over all ranks
   std::vector<Memory> memory_;      // of the ids whose home is here

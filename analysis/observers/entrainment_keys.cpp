@@ -30,7 +30,7 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
               .at_least = 0.0});
 }
 
-void check(const EntrainmentKeys& keys, const RunFacts& run) {
+void check(const EntrainmentKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
   if (run.grains->any_clumps())
     throw KeyError("", "it knows grains that are single spheres, and there are clumps; remove the section");
@@ -41,7 +41,8 @@ void check(const EntrainmentKeys& keys, const RunFacts& run) {
   require_full_gravity_from(run, keys.from);
 }
 
-std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunFacts& run, const RunningSystem& system) {
+std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunContext& run,
+                                        const RunningSystem& system) {
   EntrainmentSettings settings;
   static_cast<EntrainmentKeys&>(settings) = keys;
   std::sort(settings.grains.begin(), settings.grains.end());

@@ -21,19 +21,16 @@ using VelocitySum = FixedPoint<fraction_bits>;
 
 FluidStatistics::FluidStatistics(MPI_Comm communicator, const Decomposition& decomposition, double velocity_unit,
                                  const FluidStatisticsKeys& keys, bool sections)
-    : communicator_(communicator),
+    : MeanObserver(communicator, FluidStatisticsKeys::section, keys.from, keys.every),
       cells_(decomposition.cells()),
       spacing_(decomposition.spacing()),
       velocity_unit_(velocity_unit),
-      keys_(keys),
       sections_(sections),
       sums_(static_cast<std::size_t>(bins()) * quantities) {}
 
-void FluidStatistics::observe(const Snapshot& snapshot) {
-  // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (!snapshot.fluid || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
-  counted_step_ = snapshot.step;
-  ++measurements_;
+bool FluidStatistics::measure(const Snapshot& snapshot, bool /*counts*/) { return snapshot.fluid != nullptr; }
+
+void FluidStatistics::add(const Snapshot& snapshot) {
   std::vector<WideSum> sums(sums_.size());
   snapshot.fluid->for_each_velocity([&](const Index3& cell, const Vec3& velocity_si) {
     const int bin = sections_ ? cell[2] * cells_[1] + cell[1] : cell[2];
@@ -44,7 +41,7 @@ void FluidStatistics::observe(const Snapshot& snapshot) {
     for (int p = 0; p < 6; ++p)
       columns[product + p].add(VelocitySum::from(u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]));
   });
-  sum_over_ranks(communicator_, sums);
+  sum_over_ranks(communicator(), sums);
   for (std::size_t s = 0; s < sums.size(); ++s) sums_[s].add(sums[s]);
 }
 
@@ -61,7 +58,7 @@ FluidStatistics::Means FluidStatistics::means_of(const WideSum* sums, double cel
   Means means;
   const double n = sums[count].to_double(0);
   if (n == 0.0) return means;
-  means.fluid_fraction = n / (cells * static_cast<double>(measurements_));
+  means.fluid_fraction = n / (cells * static_cast<double>(measurements()));
   double u[3];
   for (int a = 0; a < 3; ++a) {
     u[a] = sums[velocity + a].to_double(fraction_bits) / n;
@@ -81,9 +78,8 @@ std::vector<Diagnostic> FluidStatistics::results() const {
     for (int q = 0; q < quantities; ++q) all[q].add(sums[q]);
   }
   std::vector<Diagnostic> results{{"mean_velocity_x", "m/s", means_of(all.data(), 1.0).velocity[0]}};
-  if (measurements_ == 0) forget_values(results);
-  results.push_back({"mean_from", "s", keys_.from});
-  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  if (measurements() == 0) forget_values(results);
+  add_count(results);
   return results;
 }
 
@@ -121,26 +117,17 @@ std::vector<Profile> FluidStatistics::profiles() const {
   return all;
 }
 
-void FluidStatistics::save(ArchiveWriter& archive) const {
-  archive.attribute("fluid_statistics/mean_from", keys_.from);
-  archive.attribute("fluid_statistics/measurements", measurements_);
-  archive.attribute("fluid_statistics/counted_step", counted_step_);
+void FluidStatistics::save_sums(ArchiveWriter& archive, const std::string& group) const {
+  save_count(archive, group);
   std::vector<std::int64_t> values;
   for (const WideSum& sum : sums_) values.insert(values.end(), {sum.high, sum.low});
-  write_whole(archive, communicator_, "fluid_statistics/sums", std::span<const std::int64_t>(values),
-              {static_cast<std::uint64_t>(bins()), quantities, 2});
+  write_whole(archive, communicator(), group + "/sums", std::span<const std::int64_t>(values), shape());
 }
 
-bool FluidStatistics::load(ArchiveReader& archive) {
-  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(bins()), quantities, 2};
-  if (!archive.has("fluid_statistics/mean_from") ||
-      archive.real_attribute("fluid_statistics/mean_from") != keys_.from ||
-      archive.shape("fluid_statistics/sums") != shape)
-    return false;
-  measurements_ = archive.integer_attribute("fluid_statistics/measurements");
-  counted_step_ = archive.integer_attribute("fluid_statistics/counted_step");
-  std::vector<std::int64_t> values(2 * sums_.size());
-  archive.read("fluid_statistics/sums", std::span<std::int64_t>(values), {shape, {0, 0, 0}, shape});
+bool FluidStatistics::load_sums(ArchiveReader& archive, const std::string& group) {
+  if (archive.shape(group + "/sums") != shape()) return false;
+  load_count(archive, group);
+  const auto values = read_whole<std::int64_t>(archive, group + "/sums");
   for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {values[2 * s], values[2 * s + 1]};
   return true;
 }
@@ -150,7 +137,7 @@ void describe(SectionVisitor& visit, FluidStatisticsKeys& keys) {
   describe_every(visit, keys.every);
 }
 
-std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFacts& run) {
+std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunContext& run) {
   if (keys.from < run.until) return std::nullopt;
   return fmt::format(
       "The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
@@ -158,7 +145,7 @@ std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFac
       keys.from, run.until, 0.5 * run.until);
 }
 
-std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<FluidStatistics>(system.communicator, system.decomposition, run.fluid->velocity_unit, keys,
                                            !run.box.periodic[1]);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
+#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/wide_sum.hpp"
 
 #include <mpi.h>
@@ -31,29 +32,22 @@ struct FluidStatisticsKeys {
   bool operator==(const FluidStatisticsKeys&) const = default;
 };
 void describe(SectionVisitor& visit, FluidStatisticsKeys& keys);
-std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunFacts& run,
+std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
-class FluidStatistics : public Observer {
+class FluidStatistics : public MeanObserver {
 public:
   // velocity_unit: m/s of one cell a step. sections: profiles over y and z too.
   FluidStatistics(MPI_Comm communicator, const Decomposition& decomposition, double velocity_unit,
                   const FluidStatisticsKeys& keys, bool sections);
 
-  std::string name() const override { return "fluid_statistics"; }
-  double every() const override { return keys_.every; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
-  std::vector<Diagnostic> diagnostics() const override { return {}; }
   std::vector<Diagnostic> results() const override;  // mean_velocity_x (m/s), mean_from (s), measurements (1)
 
   // z (m), velocity (m/s: x, y, z), reynolds_stress (m^2/s^2: xx, yy, zz, xy, xz, yz), fluid_fraction (1), over z; and
   // between side walls y (m), section_velocity, section_reynolds_stress, section_fluid_fraction, over z and y. Zero
   // where there was no fluid.
   std::vector<Profile> profiles() const override;
-
-  void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   enum Quantity { count, velocity = 1, product = 4, quantities = 10 };  // columns of a bin
@@ -62,17 +56,19 @@ private:
     double velocity[3] = {}, stress[6] = {};
   };
 
+  bool measure(const Snapshot& snapshot, bool counts) override;
+  void add(const Snapshot& snapshot) override;
+  void save_sums(ArchiveWriter& archive, const std::string& group) const override;
+  bool load_sums(ArchiveReader& archive, const std::string& group) override;
+  std::vector<std::uint64_t> shape() const { return {static_cast<std::uint64_t>(bins()), quantities, 2}; }
   int bins() const { return sections_ ? cells_[1] * cells_[2] : cells_[2]; }
   std::vector<WideSum> layer(int z) const;
   Means means_of(const WideSum* sums, double cells) const;
 
-  MPI_Comm communicator_;
   Index3 cells_;
   double spacing_, velocity_unit_;
-  FluidStatisticsKeys keys_;
   bool sections_;
   std::vector<WideSum> sums_;  // quantities of each bin; over all ranks, on every rank
-  std::int64_t measurements_ = 0, counted_step_ = -1;
 };
 
 }  // namespace thalweg::analysis

@@ -3,8 +3,8 @@
 #include "analysis/tools/sphere_in_layer.hpp"
 #include "analysis/tools/tensor_names.hpp"
 #include "core/geometry/symmetric_pairs.hpp"
-#include "core/parallel/mpi_session.hpp"
 #include "core/state/contact_stress.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <algorithm>
 #include <array>
@@ -58,21 +58,16 @@ private:
 
 GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
                              const GrainProfilesKeys& keys, double disk_thickness)
-    : communicator_(communicator),
+    : MeanObserver(communicator, GrainProfilesKeys::section, keys.from, keys.every),
       box_(decomposition.box()),
       width_(disk_thickness > 0.0 ? disk_thickness : box_.size[1]),
       layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / keys.layer.value_or(layer))))),
       thickness_(box_.size[2] / layers_),
-      keys_(keys),
       sums_(static_cast<std::size_t>(layers_) * quantities, 0.0) {}
 
-void GrainProfiles::observe(const Snapshot& snapshot) {
-  // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
-  counted_step_ = snapshot.step;
-  ++measurements_;
+void GrainProfiles::add(const Snapshot& snapshot) {
   const std::vector<double> sums = reproducible_sums_by_bin(
-      communicator_, layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
+      communicator(), layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
         for (std::size_t i = 0; i < snapshot.grains.id.size(); ++i) give_parts(snapshot.grains, i, bodies[i], take);
       });
   for (std::size_t s = 0; s < sums.size(); ++s) sums_[s] += sums[s];
@@ -101,7 +96,9 @@ void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const Wei
 }
 
 std::vector<Diagnostic> GrainProfiles::results() const {
-  return {{"mean_from", "s", keys_.from}, {"measurements", "1", static_cast<double>(measurements_)}};
+  std::vector<Diagnostic> results;
+  add_count(results);
+  return results;
 }
 
 std::vector<Profile> GrainProfiles::profiles() const {
@@ -113,7 +110,7 @@ std::vector<Profile> GrainProfiles::profiles() const {
   Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
   // Of all measurements together.
   const double room =
-      box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements_));
+      box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements()));
   for (int layer = 0; layer < layers_; ++layer) {
     const double* sum = sums_.data() + static_cast<std::size_t>(layer) * quantities;
     z.values.push_back((layer + 0.5) * thickness_);
@@ -135,25 +132,15 @@ std::vector<Profile> GrainProfiles::profiles() const {
   return {z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
 }
 
-void GrainProfiles::save(ArchiveWriter& archive) const {
-  archive.attribute("grain_profiles/mean_from", keys_.from);
-  archive.attribute("grain_profiles/measurements", measurements_);
-  archive.attribute("grain_profiles/counted_step", counted_step_);
-  const bool first = rank_of(communicator_) == 0;
-  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities}, nothing(2, 0);
-  const std::vector<double> none;
-  archive.write("grain_profiles/sums", std::span<const double>(first ? sums_ : none),
-                {shape, nothing, first ? shape : nothing});
+void GrainProfiles::save_sums(ArchiveWriter& archive, const std::string& group) const {
+  save_count(archive, group);
+  write_whole(archive, communicator(), group + "/sums", std::span<const double>(sums_), shape());
 }
 
-bool GrainProfiles::load(ArchiveReader& archive) {
-  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(layers_), quantities};
-  if (!archive.has("grain_profiles/mean_from") || archive.real_attribute("grain_profiles/mean_from") != keys_.from ||
-      archive.shape("grain_profiles/sums") != shape)
-    return false;
-  measurements_ = archive.integer_attribute("grain_profiles/measurements");
-  counted_step_ = archive.integer_attribute("grain_profiles/counted_step");
-  archive.read("grain_profiles/sums", std::span<double>(sums_), {shape, {0, 0}, shape});
+bool GrainProfiles::load_sums(ArchiveReader& archive, const std::string& group) {
+  if (archive.shape(group + "/sums") != shape()) return false;
+  load_count(archive, group);
+  sums_ = read_whole<double>(archive, group + "/sums");
   return true;
 }
 
@@ -168,7 +155,7 @@ void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
               .example = 2.5e-3});
 }
 
-std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,
                                          keys, run.grains->disk_thickness);

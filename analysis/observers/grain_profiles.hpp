@@ -21,6 +21,7 @@
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
+#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>
@@ -42,22 +43,18 @@ struct GrainProfilesKeys {
   bool operator==(const GrainProfilesKeys&) const = default;
 };
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys);
-std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
 struct WeightedBody;
 
-class GrainProfiles : public Observer {
+class GrainProfiles : public MeanObserver {
 public:
   // layer: m, where the keys have none; changed so that a whole number of layers fills the box. disk_thickness: m, the
   // width of the layers in place of the box's; 0: spheres.
   GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer, const GrainProfilesKeys& keys,
                 double disk_thickness = 0.0);
 
-  std::string name() const override { return "grain_profiles"; }
-  double every() const override { return keys_.every; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
-  std::vector<Diagnostic> diagnostics() const override { return {}; }
   std::vector<Diagnostic> results() const override;  // mean_from (s), measurements (1)
 
   // Over z (m, middle of the layer): solid_fraction (1), velocity (m/s: x, y, z), flux (m/s: x, y, z),
@@ -65,23 +62,21 @@ public:
   // kinetic_stress (Pa: xx, yy, zz, xy, xz, yz). Velocity and temperature are zero where there was no grain.
   std::vector<Profile> profiles() const override;
 
-  void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
-
 private:
   // Columns of a layer.
   enum Quantity { volume, mass = 1, momentum = 2, product = 5, flux = 11, contact = 14, quantities = 23 };
 
+  void add(const Snapshot& snapshot) override;
+  void save_sums(ArchiveWriter& archive, const std::string& group) const override;
+  bool load_sums(ArchiveReader& archive, const std::string& group) override;
+  std::vector<std::uint64_t> shape() const { return {static_cast<std::uint64_t>(layers_), quantities}; }
   void give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body, const TermTaker& take) const;
 
-  MPI_Comm communicator_;
   PeriodicBox box_;
   double width_;  // m, of a layer across
   int layers_;
-  double thickness_;  // m, of a layer
-  GrainProfilesKeys keys_;
+  double thickness_;          // m, of a layer
   std::vector<double> sums_;  // quantities of each layer; over all ranks, on every rank
-  std::int64_t measurements_ = 0, counted_step_ = -1;
 };
 
 }  // namespace thalweg::analysis

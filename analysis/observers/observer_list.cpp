@@ -4,7 +4,7 @@
 
 namespace thalweg::analysis {
 
-void check(const RequestedObservers& requested, const RunFacts& run) {
+void check(const RequestedObservers& requested, const RunContext& run) {
   requested.for_each([&](const auto& keys) {
     using Keys = std::decay_t<decltype(*keys)>;
     if constexpr (requires { check(*keys, run); }) {
@@ -18,7 +18,7 @@ void check(const RequestedObservers& requested, const RunFacts& run) {
   });
 }
 
-std::vector<std::string> warnings(const RequestedObservers& requested, const RunFacts& run) {
+std::vector<std::string> warnings(const RequestedObservers& requested, const RunContext& run) {
   std::vector<std::string> found;
   requested.for_each([&](const auto& keys) {
     if constexpr (requires { warning(*keys, run); }) {
@@ -29,7 +29,7 @@ std::vector<std::string> warnings(const RequestedObservers& requested, const Run
   return found;
 }
 
-std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunFacts& run,
+std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunContext& run,
                                                       const RunningSystem& system) {
   std::vector<std::unique_ptr<Observer>> observers;
   requested.for_each([&](const auto& keys) {

@@ -49,13 +49,13 @@ private:
 };
 
 // Throws KeyError, with the key from `analysis` on, where one asks for what the run does not have.
-void check(const RequestedObservers& requested, const RunFacts& run);
+void check(const RequestedObservers& requested, const RunContext& run);
 
 // The warnings of all requested observers, whole sentences.
-std::vector<std::string> warnings(const RequestedObservers& requested, const RunFacts& run);
+std::vector<std::string> warnings(const RequestedObservers& requested, const RunContext& run);
 
 // The requested ones, as far as the run has what they look at, and those that every run has.
-std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunFacts& run,
+std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunContext& run,
                                                       const RunningSystem& system);
 
 }  // namespace thalweg::analysis

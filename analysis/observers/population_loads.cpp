@@ -9,10 +9,10 @@
 
 namespace thalweg::analysis {
 
-PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, std::vector<Population> populations,
-                                 bool with_fluid)
+PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box,
+                                 std::vector<PopulationContext> populations, bool with_fluid)
     : communicator_(communicator), box_(box), populations_(std::move(populations)), with_fluid_(with_fluid) {
-  for (const Population& population : populations_)
+  for (const PopulationContext& population : populations_)
     for (const char* source : {"contact", "fluid"}) {
       if (!with_fluid_ && source[0] == 'f') continue;
       for (const auto& [what, unit] : {std::pair("force", "N"), std::pair("torque", "N m")})
@@ -27,7 +27,7 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
   auto diagnostic = diagnostics_.begin();
   std::vector<double> terms;
   const auto add = [&terms](const Vec3& v) { terms.insert(terms.end(), v.data(), v.data() + 3); };
-  for (const Population& population : populations_) {
+  for (const PopulationContext& population : populations_) {
     const Vec3 pivot = box_.wrapped_from_afar(population.pivot(snapshot.time));  // it goes on where grains come back
     terms.clear();
     for (std::size_t i = 0; i < grains.id.size(); ++i) {
@@ -45,7 +45,8 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
 
 void describe(SectionVisitor&, PopulationLoadsKeys&) {}
 
-std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys&, const RunFacts& run, const RunningSystem& system) {
+std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys&, const RunContext& run,
+                                        const RunningSystem& system) {
   return std::make_unique<PopulationLoads>(system.communicator, run.box, run.grains->populations,
                                            run.fluid || run.model_fluid);
 }

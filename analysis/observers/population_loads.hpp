@@ -24,13 +24,14 @@ struct PopulationLoadsKeys {
   bool operator==(const PopulationLoadsKeys&) const = default;
 };
 void describe(SectionVisitor& visit, PopulationLoadsKeys& keys);
-std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
 class PopulationLoads : public Observer {
 public:
   // with_fluid: fluid forces, too.
-  PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, std::vector<Population> populations, bool with_fluid);
+  PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, std::vector<PopulationContext> populations,
+                  bool with_fluid);
 
   std::string name() const override { return "population_loads"; }
   void observe(const Snapshot& snapshot) override;
@@ -45,7 +46,7 @@ public:
 private:
   MPI_Comm communicator_;
   PeriodicBox box_;
-  std::vector<Population> populations_;
+  std::vector<PopulationContext> populations_;
   bool with_fluid_;
   std::vector<Diagnostic> diagnostics_;
 };

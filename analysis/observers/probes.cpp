@@ -114,7 +114,7 @@ void require_inside(const Vec3& point, const PeriodicBox& box, const std::string
 
 }  // namespace
 
-void check(const ProbesKeys& keys, const RunFacts& run) {
+void check(const ProbesKeys& keys, const RunContext& run) {
   if (keys.points.empty() && keys.lines.empty()) throw KeyError("", "there is no point; give points, lines or both");
   for (std::size_t n = 0; n < keys.points.size(); ++n)
     require_inside(keys.points[n], run.box, fmt::format("points.{}", n));
@@ -124,7 +124,7 @@ void check(const ProbesKeys& keys, const RunFacts& run) {
   }
 }
 
-std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunFacts&, const RunningSystem& system) {
+std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunContext&, const RunningSystem& system) {
   std::vector<Vec3> points = keys.points;
   for (const ProbeLine& line : keys.lines)
     for (std::int64_t n = 0; n < line.points; ++n)

@@ -28,8 +28,8 @@ struct ProbesKeys {
   bool operator==(const ProbesKeys&) const = default;
 };
 void describe(SectionVisitor& visit, ProbesKeys& keys);
-void check(const ProbesKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunFacts& run, const RunningSystem& system);
+void check(const ProbesKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunContext& run, const RunningSystem& system);
 
 class Probes : public Observer {
 public:
@@ -38,7 +38,7 @@ public:
 
   std::string name() const override { return "probes"; }
   double every() const override { return every_; }
-  bool in_passing() const override { return true; }
+  bool is_lightweight() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   std::vector<Diagnostic> diagnostics() const override { return {}; }

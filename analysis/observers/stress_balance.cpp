@@ -14,12 +14,11 @@ namespace thalweg::analysis {
 
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
                              const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held)
-    : communicator_(communicator),
+    : MeanObserver(communicator, StressBalanceKeys::section, keys.from, keys.every),
       n_(decomposition.cells()),
       spacing_(decomposition.spacing()),
       side_walls_(!decomposition.periodic()[0] || !decomposition.periodic()[1]),
       layers_(n_[2], spacing_, keys.layer.value_or(layer)),
-      keys_(keys),
       scales_(scales),
       held_(std::move(held)),
       fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
@@ -31,11 +30,9 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
   if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
 }
 
-void StressBalance::observe(const Snapshot& snapshot) {
-  // A step that is due at `from` itself counts, whatever the last bit of its time.
-  if (!snapshot.momentum || snapshot.step <= counted_step_ || snapshot.time < keys_.from * (1.0 - 1e-12)) return;
-  counted_step_ = snapshot.step;
-  ++measurements_;
+bool StressBalance::measure(const Snapshot& snapshot, bool /*counts*/) { return snapshot.momentum != nullptr; }
+
+void StressBalance::add(const Snapshot& snapshot) {
   add_fluid(*snapshot.momentum);
   add_grains(snapshot);
   add_grains_at_walls(snapshot);
@@ -67,7 +64,7 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
   if (snapshot.grains.global_count == 0) return;
   const Moments moments{contact_moments(snapshot), lubrication_moments(snapshot)};
   const std::vector<double> sums =
-      reproducible_sums_by_bin(communicator_, layers_.count(), grain_columns,
+      reproducible_sums_by_bin(communicator(), layers_.count(), grain_columns,
                                [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
@@ -114,7 +111,7 @@ void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
            std::array{end.force.x(), end.force.x() * (height - layers_.bottom(layer))});
     });
   };
-  const std::vector<double> sums = reproducible_sums_by_bin(communicator_, layers_.count() + 1, 2, give_forces);
+  const std::vector<double> sums = reproducible_sums_by_bin(communicator(), layers_.count() + 1, 2, give_forces);
   for (std::size_t s = 0; s < sums.size(); ++s) held_up_[s] += sums[s];
 }
 
@@ -124,26 +121,20 @@ std::size_t StressBalance::stored_size() const {
   return size;
 }
 
-void StressBalance::save(ArchiveWriter& archive) const {
-  archive.attribute("stress_balance/mean_from", keys_.from);
-  archive.attribute("stress_balance/measurements", measurements_);
-  archive.attribute("stress_balance/counted_step", counted_step_);
-  archive.attribute("stress_balance/layers", static_cast<std::int64_t>(layers_.count()));
+void StressBalance::save_sums(ArchiveWriter& archive, const std::string& group) const {
+  save_count(archive, group);
+  archive.attribute(group + "/layers", static_cast<std::int64_t>(layers_.count()));
   std::vector<double> all;
   for (const auto sums : stored) all.insert(all.end(), (this->*sums).begin(), (this->*sums).end());
-  write_whole(archive, communicator_, "stress_balance/sums", std::span<const double>(all), {stored_size()});
+  write_whole(archive, communicator(), group + "/sums", all);
 }
 
-bool StressBalance::load(ArchiveReader& archive) {
-  const std::vector<std::uint64_t> shape{stored_size()};
-  if (!archive.has("stress_balance/mean_from") || archive.real_attribute("stress_balance/mean_from") != keys_.from ||
-      archive.integer_attribute("stress_balance/layers") != layers_.count() ||
-      archive.shape("stress_balance/sums") != shape)
+bool StressBalance::load_sums(ArchiveReader& archive, const std::string& group) {
+  if (archive.integer_attribute(group + "/layers") != layers_.count() ||
+      archive.shape(group + "/sums") != std::vector<std::uint64_t>{stored_size()})
     return false;
-  measurements_ = archive.integer_attribute("stress_balance/measurements");
-  counted_step_ = archive.integer_attribute("stress_balance/counted_step");
-  std::vector<double> all(stored_size());
-  archive.read("stress_balance/sums", std::span<double>(all), {shape, {0}, shape});
+  load_count(archive, group);
+  const auto all = read_whole<double>(archive, group + "/sums");
   auto next = all.begin();
   for (const auto sums : stored) {
     std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
@@ -162,7 +153,7 @@ void describe(SectionVisitor& visit, StressBalanceKeys& keys) {
               .example = 1.25e-3});
 }
 
-void check(const StressBalanceKeys& keys, const RunFacts& run) {
+void check(const StressBalanceKeys& keys, const RunContext& run) {
   require_grains(run, "share the stress");
   if (run.box.periodic[2])
     throw KeyError("",
@@ -175,7 +166,7 @@ void check(const StressBalanceKeys& keys, const RunFacts& run) {
   require_full_gravity_from(run, keys.from);
 }
 
-std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   const BalanceScales scales{run.fluid->density, run.fluid->density * run.fluid->kinematic_viscosity,
                              run.grains->reference_diameter, run.grains->body_force,

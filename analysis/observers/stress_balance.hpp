@@ -26,6 +26,7 @@
 
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/tools/cell_layers.hpp"
+#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>
@@ -51,29 +52,25 @@ struct StressBalanceKeys {
   bool operator==(const StressBalanceKeys&) const = default;
 };
 void describe(SectionVisitor& visit, StressBalanceKeys& keys);
-void check(const StressBalanceKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunFacts& run,
+void check(const StressBalanceKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
 struct BalanceScales {
-  double fluid_density = 0.0;         // kg/m^3
-  double viscosity = 0.0;             // Pa s
-  double diameter = 0.0;              // m, that stands for all grains
-  GrainFacts::Force body_force = {};  // on grains that are free
-  double sound_speed = 0.0;           // m/s, of the lattice: gives the pressure
+  double fluid_density = 0.0;           // kg/m^3
+  double viscosity = 0.0;               // Pa s
+  double diameter = 0.0;                // m, that stands for all grains
+  GrainContext::Force body_force = {};  // on grains that are free
+  double sound_speed = 0.0;             // m/s, of the lattice: gives the pressure
 };
 
-class StressBalance : public Observer {
+class StressBalance : public MeanObserver {
 public:
   // layer: m, where the keys have none; layers are of whole planes of cells. z must not be periodic.
   StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer, const StressBalanceKeys& keys,
                 const BalanceScales& scales, std::vector<HeldGrains> held);
 
-  std::string name() const override { return "stress_balance"; }
-  double every() const override { return keys_.every; }
   bool needs_momentum() const override { return true; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before, or not recorded, does not count
-  std::vector<Diagnostic> diagnostics() const override { return {}; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
   // maximum; bed_stress (Pa): the driving stress there less the side walls' (its largest where there is no bed);
@@ -89,9 +86,6 @@ public:
   // subgrid_stress, reynolds_stress, mean_flow_stress (xx, yy, zz, xy, xz, yz); xz alone: rotation_stress,
   // contact_rotation_stress, sum_of_stresses, total_stress, side_wall_stress, driving_stress.
   std::vector<Profile> profiles() const override;
-
-  void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   // Columns of a plane of cells: PlaneMomentum.
@@ -124,6 +118,10 @@ private:
     int layer = 0;
   };
 
+  bool measure(const Snapshot& snapshot, bool counts) override;
+  void add(const Snapshot& snapshot) override;
+  void save_sums(ArchiveWriter& archive, const std::string& group) const override;
+  bool load_sums(ArchiveReader& archive, const std::string& group) override;
   void add_fluid(const MomentumBudget& budget);
   void add_grains(const Snapshot& snapshot);
   void give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const;
@@ -145,12 +143,10 @@ private:
   std::vector<LayerMeans> all_means() const;
   std::size_t stored_size() const;
 
-  MPI_Comm communicator_;
   Index3 n_;         // cells of the domain
   double spacing_;   // m
   bool side_walls_;  // x or y is not periodic
   CellLayers layers_;
-  StressBalanceKeys keys_;
   BalanceScales scales_;
   std::vector<HeldGrains> held_;
   // Over measurements and all ranks, on every rank.
@@ -161,7 +157,6 @@ private:
   std::vector<double> held_up_;  // of each layer: N, along x, of walls but the top on grains, and times the height at
                                  // which they act over the layer's bottom; last the same of the top
   std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
-  std::int64_t measurements_ = 0, counted_step_ = -1;
 
   // What a checkpoint holds, in its order.
   static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,

@@ -49,7 +49,7 @@ void StressBalance::set_fluid_means(int layer, LayerMeans& means) const {
   const std::array<double, fluid_columns> sum = fluid_of(layer);
   if (sum[cells] == 0.0) return;
   const double planes = layers_.first_plane(layer + 1) - layers_.first_plane(layer);
-  const double unit = 1.0 / (planes * n_[0] * n_[1] * static_cast<double>(measurements_));
+  const double unit = 1.0 / (planes * n_[0] * n_[1] * static_cast<double>(measurements()));
   means.pressure = (sum[density] / sum[cells] - mean_density()) * scales_.sound_speed * scales_.sound_speed;
   for (int a = 0; a < 3; ++a) means.fluid_velocity[a] = sum[static_cast<std::size_t>(flow + a)] / sum[density];
   for (std::size_t p = 0; p < 6; ++p) {
@@ -64,7 +64,7 @@ void StressBalance::set_fluid_means(int layer, LayerMeans& means) const {
 
 void StressBalance::set_grain_means(int layer, LayerMeans& means) const {
   const double* sum = grains_.data() + static_cast<std::size_t>(layer) * grain_columns;
-  const double room = n_[0] * n_[1] * spacing_ * spacing_ * layers_.height(layer) * static_cast<double>(measurements_);
+  const double room = n_[0] * n_[1] * spacing_ * spacing_ * layers_.height(layer) * static_cast<double>(measurements());
   means.solid_fraction = sum[volume] / room;
   if (sum[mass] == 0.0) return;
   const Vec3 u = Vec3(sum + momentum) / sum[mass];
@@ -126,7 +126,7 @@ double StressBalance::driven_above(int layer) const {
 }
 
 void StressBalance::set_totals(int layer, LayerMeans& means) const {
-  const double area = n_[0] * n_[1] * spacing_ * spacing_ * static_cast<double>(measurements_);
+  const double area = n_[0] * n_[1] * spacing_ * spacing_ * static_cast<double>(measurements());
   const double carried =
       means.kinetic[xz] + means.viscous[xz] + means.subgrid[xz] + means.reynolds[xz] + means.mean_flow[xz];
   means.sum = carried + means.contact[row_xz] + means.grain_fluid[row_xz] + means.lubrication[row_xz];
@@ -142,7 +142,7 @@ void StressBalance::set_totals(int layer, LayerMeans& means) const {
 
 StressBalance::LayerMeans StressBalance::means_of(int layer) const {
   LayerMeans means;
-  if (measurements_ == 0) return means;
+  if (measurements() == 0) return means;
   set_fluid_means(layer, means);
   set_grain_means(layer, means);
   set_drag_law(means);
@@ -191,14 +191,13 @@ std::vector<Diagnostic> StressBalance::results() const {
                                   {"largest_difference_at", "m", height(total)},
                                   {"largest_difference_of_sum", "1", sum.share},
                                   {"largest_difference_of_sum_at", "m", height(sum)}};
-  if (measurements_ == 0) forget_values(results);
-  results.push_back({"mean_from", "s", keys_.from});
-  results.push_back({"measurements", "1", static_cast<double>(measurements_)});
+  if (measurements() == 0) forget_values(results);
+  add_count(results);
   return results;
 }
 
 std::vector<std::string> StressBalance::remarks() const {
-  if (measurements_ == 0) return {"stress balance: nothing was measured"};
+  if (measurements() == 0) return {"stress balance: nothing was measured"};
   const std::vector<Diagnostic> r = results();
   const auto value = [&r](const std::string& name) {
     return std::find_if(r.begin(), r.end(), [&name](const Diagnostic& diagnostic) { return diagnostic.name == name; })

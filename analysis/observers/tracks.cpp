@@ -72,24 +72,21 @@ void Tracks::save(ArchiveWriter& archive) const {
   const std::uint64_t columns = std::tuple_size_v<decltype(GrainRecord::values)>;
   std::vector<double> values;
   for (const GrainRecord& record : last_) values.insert(values.end(), record.values.begin(), record.values.end());
-  write_whole(archive, communicator_, "tracks/id", std::span<const std::int64_t>(grains_), {grains_.size()});
+  write_whole(archive, communicator_, "tracks/id", grains_);
   write_whole(archive, communicator_, "tracks/last", std::span<const double>(values),
               {measurements_ > 0 ? grains_.size() : 0, columns});
 }
 
 bool Tracks::load(ArchiveReader& archive) {
   if (!archive.has("tracks/id") || archive.shape("tracks/id").at(0) != grains_.size()) return false;
-  std::vector<std::int64_t> grains(grains_.size());
-  archive.read("tracks/id", std::span<std::int64_t>(grains), {{grains.size()}, {0}, {grains.size()}});
-  if (grains != grains_) return false;
+  if (read_whole<std::int64_t>(archive, "tracks/id") != grains_) return false;
   seen_step_ = archive.integer_attribute("tracks/seen_step");
   measurements_ = archive.integer_attribute("tracks/measurements");
   last_time_ = archive.real_attribute("tracks/last_time");
   const std::vector<std::uint64_t> shape = archive.shape("tracks/last");
-  std::vector<double> values(shape.at(0) * shape.at(1));
-  archive.read("tracks/last", std::span<double>(values), {shape, {0, 0}, shape});
+  const auto values = read_whole<double>(archive, "tracks/last");
   if (rank_of(communicator_) != 0) return true;
-  last_.assign(shape[0], {});
+  last_.assign(shape.at(0), {});
   for (std::size_t n = 0; n < last_.size(); ++n) {
     last_[n].id = grains_[n];
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * shape[1]), shape[1], last_[n].values.begin());
@@ -107,7 +104,7 @@ void describe(SectionVisitor& visit, TracksKeys& keys) {
   describe_every(visit, keys.every);
 }
 
-void check(const TracksKeys& keys, const RunFacts& run) {
+void check(const TracksKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
   if (!keys.grains.empty() && keys.one_in != 1)
     throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
@@ -121,7 +118,7 @@ void check(const TracksKeys& keys, const RunFacts& run) {
                                    (all + TracksKeys::most_grains - 1) / TracksKeys::most_grains));
 }
 
-std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system) {
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext& run, const RunningSystem& system) {
   std::vector<GlobalId> ids = keys.grains;
   std::sort(ids.begin(), ids.end());
   if (ids.empty())

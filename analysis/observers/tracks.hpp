@@ -27,8 +27,8 @@ struct TracksKeys {
   bool operator==(const TracksKeys&) const = default;
 };
 void describe(SectionVisitor& visit, TracksKeys& keys);
-void check(const TracksKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunFacts& run, const RunningSystem& system);
+void check(const TracksKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext& run, const RunningSystem& system);
 
 class Tracks : public Observer {
 public:
@@ -37,7 +37,7 @@ public:
 
   std::string name() const override { return "tracks"; }
   double every() const override { return every_; }
-  bool in_passing() const override { return true; }
+  bool is_lightweight() const override { return true; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   std::vector<Diagnostic> diagnostics() const override { return {}; }

@@ -19,20 +19,6 @@ constexpr double share_that_counts_as_moving = 0.01;
 constexpr double slowest = -5.0, fastest = 15.0;
 constexpr int velocity_bins = 200;
 
-// What all ranks hold alike.
-template <typename T>
-void write_once(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path, const std::vector<T>& values) {
-  write_whole(archive, communicator, path, std::span<const T>(values), {values.size()});
-}
-
-template <typename T>
-std::vector<T> read_all(ArchiveReader& archive, const std::string& path) {
-  const std::vector<std::uint64_t> shape = archive.shape(path);
-  std::vector<T> values(shape.at(0));
-  archive.read(path, std::span<T>(values), {shape, {0}, shape});
-  return values;
-}
-
 }  // namespace
 
 double TransportScales::weight() const {
@@ -52,34 +38,33 @@ double TransportScales::moving_speed() const {
 }
 
 TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
-    : communicator_(communicator),
+    : MeanObserver(communicator, TransportRateKeys::section, keys.from, keys.every),
       scales_(scales),
-      keys_(keys),
       moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
       velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
       hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), moving_speed_) {}
 
-void TransportRate::observe(const Snapshot& snapshot) {
+bool TransportRate::measure(const Snapshot& snapshot, bool counts) {
   const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
-  measure(snapshot, bodies);
-  // from may be a rounded multiple of the time step: a measurement at that very step counts.
-  const bool counts = snapshot.time >= keys_.from * (1.0 - 1e-12);
-  // A state seen twice, as when a run goes on from a checkpoint, does not change the hops.
+  measure_bodies(snapshot, bodies);
+  // A state seen twice, as at a restart, does not change the hops.
   hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
-  if (!counts || snapshot.step <= counted_step_) return;
+  return true;
+}
+
+void TransportRate::add(const Snapshot& snapshot) {
   if (q_s_.count() == 0) first_time_ = snapshot.time;
-  counted_step_ = snapshot.step;
   last_time_ = snapshot.time;
   q_s_.add(latest_.q_s);
   moving_.add(static_cast<double>(latest_.moving));
   sum_of_shares_ += latest_.share();
   sum_of_activity_ += latest_.activity;
-  count_velocities(bodies);
+  count_velocities(free_bodies_of(snapshot.grains));
 }
 
-void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& bodies) {
+void TransportRate::measure_bodies(const Snapshot& snapshot, const std::vector<Body>& bodies) {
   std::vector<double> terms;
   std::int64_t moving = 0;
   double largest_squared = 0.0;
@@ -92,12 +77,12 @@ void TransportRate::measure(const Snapshot& snapshot, const std::vector<Body>& b
   }
   const Vec3 size = snapshot.decomposition->box().size;
   const double width = snapshot.grains.disk_thickness > 0.0 ? snapshot.grains.disk_thickness : size.y();
-  const std::vector<double> sums = reproducible_sums(communicator_, terms, 2);
+  const std::vector<double> sums = reproducible_sums(communicator(), terms, 2);
   latest_.q_s = sums[0] / (size.x() * width);
   latest_.activity = sums[1] / (size.x() * width);
-  latest_.moving = sum_over_ranks(communicator_, moving);
-  latest_.grains = sum_over_ranks(communicator_, static_cast<std::int64_t>(bodies.size()));
-  latest_.largest_speed = std::sqrt(max_over_ranks(communicator_, largest_squared));
+  latest_.moving = sum_over_ranks(communicator(), moving);
+  latest_.grains = sum_over_ranks(communicator(), static_cast<std::int64_t>(bodies.size()));
+  latest_.largest_speed = std::sqrt(max_over_ranks(communicator(), largest_squared));
 }
 
 void TransportRate::count_velocities(const std::vector<Body>& bodies) {
@@ -106,7 +91,7 @@ void TransportRate::count_velocities(const std::vector<Body>& bodies) {
   for (const Body& body : bodies)
     if (body.velocity.squaredNorm() > moving_speed_ * moving_speed_)
       for (std::size_t a = 0; a < 3; ++a) ++counts[a * cells + velocities_[a].bin_of(body.velocity[a])];
-  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);
+  MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator());
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] += counts[c];
 }
 
@@ -116,7 +101,6 @@ std::vector<Diagnostic> TransportRate::diagnostics() const {
   diagnostics.push_back({"moving_grains", "1", static_cast<double>(latest_.moving)});
   diagnostics.push_back({"moving_share", "1", latest_.share()});
   diagnostics.push_back({"activity", "m", latest_.activity});
-  diagnostics.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
   return diagnostics;
 }
 
@@ -155,9 +139,9 @@ std::vector<Diagnostic> TransportRate::results() const {
   results.push_back({"reference_diameter", "m", scales_.grain_diameter});
   results.push_back({"reference_density", "kg/m^3", scales_.grain_density});
   results.push_back({"moving_speed", "m/s", moving_speed_});
-  results.push_back({"mean_from", "s", keys_.from});
-  results.push_back({"measurements", "1", static_cast<double>(q_s_.count())});
+  add_count(results);
   for (const Diagnostic& latest : diagnostics()) results.push_back(latest);
+  results.push_back({"largest_grain_speed", "m/s", latest_.largest_speed});
   return results;
 }
 
@@ -187,7 +171,7 @@ std::vector<Profile> TransportRate::profiles() const {
   return profiles;
 }
 
-// The latest measurement too: a row of the series may come before the next.
+// The latest measurement is saved too: a row of the series may come before the next.
 std::vector<double> TransportRate::sums() const {
   return {first_time_,
           last_time_,
@@ -204,39 +188,34 @@ SavedSettings TransportRate::settings() const {
   return {{"moving_speed", moving_speed_}, {"grain_diameter", scales_.grain_diameter}};
 }
 
-void TransportRate::save(ArchiveWriter& archive) const {
-  archive.attribute("transport_rate/mean_from", keys_.from);
-  save_settings(archive, "transport_rate", settings());
-  archive.attribute("transport_rate/counted_step", counted_step_);
-  write_once(archive, communicator_, "transport_rate/sums", sums());
-  write_once(archive, communicator_, "transport_rate/q_s_batches", q_s_.state());
-  write_once(archive, communicator_, "transport_rate/moving_batches", moving_.state());
+void TransportRate::save_sums(ArchiveWriter& archive, const std::string& group) const {
+  write_whole(archive, communicator(), group + "/sums", sums());
+  write_whole(archive, communicator(), group + "/q_s_batches", q_s_.state());
+  write_whole(archive, communicator(), group + "/moving_batches", moving_.state());
   std::vector<std::int64_t> counts;
   for (const Histogram& velocity : velocities_)
     counts.insert(counts.end(), velocity.counts().begin(), velocity.counts().end());
-  write_once(archive, communicator_, "transport_rate/velocity_counts", counts);
-  hops_.save(archive, "transport_rate");
+  write_whole(archive, communicator(), group + "/velocity_counts", counts);
+  hops_.save(archive, group);
 }
 
-bool TransportRate::load(ArchiveReader& archive) {
+bool TransportRate::load_sums(ArchiveReader& archive, const std::string& group) {
   const std::size_t cells = velocities_[0].counts().size();
-  const std::vector<std::uint64_t> shape{3 * cells};
-  if (!archive.has("transport_rate/mean_from") || archive.real_attribute("transport_rate/mean_from") != keys_.from ||
-      !were_saved_with(archive, "transport_rate", settings()) || !archive.has("transport_rate/velocity_counts") ||
-      !archive.has("transport_rate/q_s_batches") || archive.shape("transport_rate/velocity_counts") != shape)
+  if (!archive.has(group + "/velocity_counts") || !archive.has(group + "/q_s_batches") ||
+      archive.shape(group + "/velocity_counts") != std::vector<std::uint64_t>{3 * cells})
     return false;
-  counted_step_ = archive.integer_attribute("transport_rate/counted_step");
-  const auto sums = read_all<double>(archive, "transport_rate/sums");
+  const auto sums = read_whole<double>(archive, group + "/sums");
   first_time_ = sums.at(0);
   last_time_ = sums.at(1);
   sum_of_shares_ = sums.at(2);
   sum_of_activity_ = sums.at(3);
   latest_ = {sums.at(4), sums.at(5), std::llround(sums.at(6)), std::llround(sums.at(7)), sums.at(8)};
-  q_s_.restore(read_all<double>(archive, "transport_rate/q_s_batches"));
-  moving_.restore(read_all<double>(archive, "transport_rate/moving_batches"));
-  const auto counts = read_all<std::int64_t>(archive, "transport_rate/velocity_counts");
+  q_s_.restore(read_whole<double>(archive, group + "/q_s_batches"));
+  moving_.restore(read_whole<double>(archive, group + "/moving_batches"));
+  restore_count(q_s_.count());
+  const auto counts = read_whole<std::int64_t>(archive, group + "/velocity_counts");
   for (std::size_t c = 0; c < counts.size(); ++c) velocities_[c / cells].counts()[c % cells] = counts[c];
-  hops_.load(archive, "transport_rate");
+  hops_.load(archive, group);
   return true;
 }
 
@@ -254,9 +233,9 @@ void describe(SectionVisitor& visit, TransportRateKeys& keys) {
        .example = 1e-3});
 }
 
-void check(const TransportRateKeys&, const RunFacts& run) { require_grains(run, "measure"); }
+void check(const TransportRateKeys&, const RunContext& run) { require_grains(run, "measure"); }
 
-std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run) {
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run) {
   if (keys.from < run.until) return std::nullopt;
   return fmt::format(
       "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
@@ -264,7 +243,7 @@ std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts
       keys.from, run.until, 0.5 * run.until);
 }
 
-TransportScales transport_scales(const RunFacts& run) {
+TransportScales transport_scales(const RunContext& run) {
   TransportScales scales{run.grains->reference_diameter, run.grains->reference_density, 0.0, run.gravity.norm()};
   if (run.fluid) {
     scales.fluid_density = run.fluid->density;
@@ -277,7 +256,7 @@ TransportScales transport_scales(const RunFacts& run) {
   return scales;
 }
 
-std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);
 }

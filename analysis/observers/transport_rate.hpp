@@ -16,7 +16,7 @@
 #include "analysis/tools/correlated_mean.hpp"
 #include "analysis/tools/histogram.hpp"
 #include "analysis/tools/hops.hpp"
-#include "analysis/tools/saved_settings.hpp"
+#include "analysis/tools/mean_observer.hpp"
 #include "analysis/tools/stationarity.hpp"
 
 #include <mpi.h>
@@ -42,7 +42,7 @@ struct TransportScales {
   double moving_speed() const;
   bool have_q_star() const { return fluid_density > 0.0 && flux() > 0.0; }
 };
-TransportScales transport_scales(const RunFacts& run);  // of a run with grains
+TransportScales transport_scales(const RunContext& run);  // of a run with grains
 
 struct TransportRateKeys {
   static constexpr const char* section = "transport_rate";
@@ -55,40 +55,33 @@ struct TransportRateKeys {
   bool operator==(const TransportRateKeys&) const = default;
 };
 void describe(SectionVisitor& visit, TransportRateKeys& keys);
-void check(const TransportRateKeys& keys, const RunFacts& run);
-std::optional<std::string> warning(const TransportRateKeys& keys, const RunFacts& run);
-std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunFacts& run,
+void check(const TransportRateKeys& keys, const RunContext& run);
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run);
+std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
-class TransportRate : public Observer {
+class TransportRate : public MeanObserver {
 public:
   TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys);
 
-  std::string name() const override { return "transport_rate"; }
-  double every() const override { return keys_.every; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again in the means
-
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed), moving_share (1: of all
-  // free grains), activity (m), largest_grain_speed (m/s).
+  // free grains), activity (m).
   std::vector<Diagnostic> diagnostics() const override;
 
   // q_s_mean, q_s_deviation (standard deviation of the measurements), q_s_error (standard error of the mean),
-  // q_s_independent (values that the measurements are worth), q_s_error_holds (1, or 0: the run is too short for it,
-  // and it is more), q_s_correlation_time (s, integrated), q_s_drift and q_s_drift_error (m^2/s, over the whole time),
-  // steady (1: it is, 0: it drifts, -1: too few values to tell, -2:
-  // half of the mean may be hidden); in a fluid q_star_mean, _deviation, _error, _drift,
-  // _drift_error; moving_grains_mean and _error, moving_share_mean, activity_mean; those of Hops; reference_diameter,
-  // reference_density, moving_speed, mean_from (s), measured_from and measured_until (s: first and last measurement
-  // that counts), measurements; then the latest diagnostics. Means are not a number as long as nothing was measured.
+  // q_s_independent (values that the measurements are worth), q_s_error_holds (1; 0: an underestimate, the run is too
+  // short), q_s_correlation_time (s, integrated), q_s_drift and q_s_drift_error (m^2/s, over the whole time), steady
+  // (1; 0: drifts; -1: too few values to tell; -2: half of the mean may be hidden); in a fluid q_star_mean, _deviation,
+  // _error, _drift, _drift_error; moving_grains_mean and _error, moving_share_mean, activity_mean; the results of Hops;
+  // measured_from and measured_until (s: first and last measurement that counts), reference_diameter,
+  // reference_density, moving_speed, mean_from (s), measurements; then the latest diagnostics and largest_grain_speed
+  // (m/s). Means are not a number as long as nothing was measured.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;  // the mean, its error and whether it is steady
 
   // velocity_edges (m/s), velocity_density (s/m: of x, y, z of moving grains, times the width of a bin the share of all
   // velocities that were in it); those of Hops.
   std::vector<Profile> profiles() const override;
-
-  void save(ArchiveWriter& archive) const override;
-  bool load(ArchiveReader& archive) override;  // takes the sums over only if they were begun at the same `from`
 
 private:
   struct Latest {
@@ -98,18 +91,19 @@ private:
     double largest_speed = 0.0;  // m/s
     double share() const { return grains > 0 ? static_cast<double>(moving) / static_cast<double>(grains) : 0.0; }
   };
-  void measure(const Snapshot& snapshot, const std::vector<Body>& bodies);
+  bool measure(const Snapshot& snapshot, bool counts) override;
+  void add(const Snapshot& snapshot) override;
+  void save_sums(ArchiveWriter& archive, const std::string& group) const override;
+  bool load_sums(ArchiveReader& archive, const std::string& group) override;
+  SavedSettings settings() const override;
+  void measure_bodies(const Snapshot& snapshot, const std::vector<Body>& bodies);
   void count_velocities(const std::vector<Body>& bodies);
-  SavedSettings settings() const;
-  std::vector<double> sums() const;  // for a checkpoint: what is not elsewhere
+  std::vector<double> sums() const;  // saved sums and the latest measurement
   double interval() const;           // s, between measurements that count
 
-  MPI_Comm communicator_;
   TransportScales scales_;
-  TransportRateKeys keys_;
   double moving_speed_;  // m/s
   Latest latest_;
-  std::int64_t counted_step_ = -1;             // of the latest measurement that counts
   double first_time_ = 0.0, last_time_ = 0.0;  // s, of the first and the latest of those
   double sum_of_shares_ = 0.0, sum_of_activity_ = 0.0;
   CorrelatedMean q_s_, moving_;

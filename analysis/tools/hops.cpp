@@ -124,7 +124,7 @@ void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   archive.attribute(group + "/hops_sum_of_times", sum_of_times_);
   std::vector<std::int64_t> counts(lengths_.counts().begin(), lengths_.counts().end());
   counts.insert(counts.end(), times_.counts().begin(), times_.counts().end());
-  write_whole(archive, communicator_, group + "/hops_counts", std::span<const std::int64_t>(counts), {counts.size()});
+  write_whole(archive, communicator_, group + "/hops_counts", counts);
   if (!homes_) return;
   std::vector<double> rows;
   for (const Memory& m : memory_)
@@ -139,8 +139,7 @@ void Hops::load(ArchiveReader& archive, const std::string& group) {
   last_time_ = archive.real_attribute(group + "/hops_last_time");
   sum_of_lengths_ = archive.real_attribute(group + "/hops_sum_of_lengths");
   sum_of_times_ = archive.real_attribute(group + "/hops_sum_of_times");
-  std::vector<std::int64_t> counts(2 * cells);
-  archive.read(group + "/hops_counts", std::span<std::int64_t>(counts), {shape, {0}, shape});
+  const auto counts = read_whole<std::int64_t>(archive, group + "/hops_counts");
   std::copy(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
   std::copy(counts.begin() + static_cast<std::ptrdiff_t>(cells), counts.end(), times_.counts().begin());
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/hops_of_grains")[0]));

@@ -12,8 +12,8 @@
 #pragma once
 
 #include "analysis/observer/observer.hpp"
+#include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/histogram.hpp"
-#include "analysis/tools/home_by_id.hpp"
 #include "core/geometry/periodic_box.hpp"
 
 #include <mpi.h>
@@ -74,7 +74,7 @@ private:
 
   MPI_Comm communicator_;
   double moving_speed_;
-  std::optional<HomeById> homes_;                     // from the first measurement on
+  std::optional<DistributionById> homes_;             // from the first measurement on
   std::vector<Memory> memory_;                        // of the ids whose home is here
   double last_time_ = 0.0;                            // s, of the latest measurement
   Histogram lengths_, times_;                         // over all ranks, on every rank

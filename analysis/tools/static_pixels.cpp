@@ -1,6 +1,7 @@
 #include "analysis/tools/static_pixels.hpp"
 
 #include "core/parallel/mpi_count.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,8 +105,7 @@ void StaticPixels::save(ArchiveWriter& archive, const std::string& group) const 
   archive.attribute(group + "/looks_begun", begun_);
   archive.attribute(group + "/pixel", height_);
   archive.attribute(group + "/columns_a_grain", columns_a_grain_);
-  const std::uint64_t size = surface_.size(), mine = rank_of(communicator_) == 0 ? size : 0;
-  if (size > 0) archive.write(group + "/surface", std::span<const double>(surface_).first(mine), {{size}, {0}, {mine}});
+  if (!surface_.empty()) write_whole(archive, communicator_, group + "/surface", surface_);
   if (!homes_) return;
   const auto columns = static_cast<std::uint64_t>(columns_a_grain_);
   std::vector<std::int64_t> values;
@@ -124,11 +124,7 @@ void StaticPixels::load(ArchiveReader& archive, const std::string& group) {
   picture_begun_ = archive.real_attribute(group + "/picture_begun");
   begun_ = archive.real_attribute(group + "/looks_begun");
   columns_a_grain_ = archive.integer_attribute(group + "/columns_a_grain");
-  if (archive.has(group + "/surface")) {
-    const std::vector<std::uint64_t> shape = archive.shape(group + "/surface");
-    surface_.assign(shape.at(0), 0.0);
-    archive.read(group + "/surface", std::span<double>(surface_), {shape, {0}, shape});
-  }
+  if (archive.has(group + "/surface")) surface_ = read_whole<double>(archive, group + "/surface");
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/pixels_of_grains").at(0)));
   const auto columns = static_cast<std::size_t>(columns_a_grain_), numbers = 1 + 2 * columns;
   std::vector<std::int64_t> values(homes_->size() * numbers);

@@ -4,11 +4,11 @@
 //
 // The looks of one such time make a picture, then the next picture begins. A grain covers a disk with its whole radius,
 // whatever stands in front of it. Pixels that one grain has covered at all looks are kept, with the grain, at the home
-// of its id (home_by_id.hpp): a highest and a lowest pixel for each column, since what disks have in common has no
-// gaps along a column.
+// of its id (distribution_by_id.hpp): a highest and a lowest pixel for each column, since what disks have in common has
+// no gaps along a column.
 #pragma once
 
-#include "analysis/tools/home_by_id.hpp"
+#include "analysis/tools/distribution_by_id.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
 
@@ -58,12 +58,12 @@ private:
   MPI_Comm communicator_;
   PeriodicBox box_;
   std::int64_t columns_;
-  double width_, height_;             // m, of a pixel
-  double static_time_;                // s
-  std::optional<HomeById> homes_;     // from the first look on
-  std::int64_t columns_a_grain_ = 0;  // that the largest grain can cover
-  std::vector<std::int64_t> first_;   // of each grain whose home is here: its first column, may be outside the box
-  std::vector<Rows> rows_;            // of each such grain and its columns
+  double width_, height_;                  // m, of a pixel
+  double static_time_;                     // s
+  std::optional<DistributionById> homes_;  // from the first look on
+  std::int64_t columns_a_grain_ = 0;       // that the largest grain can cover
+  std::vector<std::int64_t> first_;        // of each grain whose home is here: its first column, may be outside the box
+  std::vector<Rows> rows_;                 // of each such grain and its columns
   double begun_ = 0.0, picture_begun_ = 0.0;  // s: of the looks under way, and of the latest picture
   std::vector<double> surface_;
 };

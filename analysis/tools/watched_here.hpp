@@ -1,8 +1,8 @@
-// Which of the grains here an observer watches. The homes of the ids know it (home_by_id.hpp), and a rank asks them for
-// the grains that have come to it since it last looked, so that no rank knows of more grains than its own.
+// Which of the grains here an observer watches. The homes of the ids know it (distribution_by_id.hpp), and a rank asks
+// them for the grains that have come to it since it last looked, so that no rank knows of more grains than its own.
 #pragma once
 
-#include "analysis/tools/home_by_id.hpp"
+#include "analysis/tools/distribution_by_id.hpp"
 
 #include <algorithm>
 #include <span>
@@ -22,7 +22,7 @@ public:
   // The flags of the grains that are here now, in the order of ids. is_watched(id): what the home of an id knows.
   // Collective.
   template <typename AtHome>
-  const std::vector<char>& flags(MPI_Comm communicator, std::span<const GlobalId> ids, const HomeById& homes,
+  const std::vector<char>& flags(MPI_Comm communicator, std::span<const GlobalId> ids, const DistributionById& homes,
                                  const AtHome& is_watched) {
     if (!any_rank(communicator, !std::ranges::equal(ids, ids_))) return flags_;
     std::vector<std::pair<GlobalId, char>> known;

@@ -1,7 +1,7 @@
 #include "dem/clumps/assemblies.hpp"
 
 #include "core/base/error.hpp"
-#include "core/parallel/mpi_session.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -61,18 +61,13 @@ void Assemblies::save(ArchiveWriter& archive, const std::string& group, MPI_Comm
   if (motions_.empty()) return;
   std::vector<std::int64_t> numbers;
   std::vector<double> places;
-  const bool first = rank_of(communicator) == 0;
-  if (first)
-    for (const Member& member : members_) {
-      numbers.insert(numbers.end(), {member.id, member.assembly});
-      places.insert(places.end(), member.at_start.data(), member.at_start.data() + 3);
-    }
-  const auto rows = static_cast<std::uint64_t>(members_.size());
-  const auto box = [&](std::uint64_t columns) {
-    return ArrayBox{{rows, columns}, {0, 0}, {first ? rows : 0, first ? columns : 0}};
-  };
-  archive.write(group + "/assembly_members", numbers, box(2));
-  archive.write(group + "/assembly_places_at_start", places, box(3));
+  for (const Member& member : members_) {
+    numbers.insert(numbers.end(), {member.id, member.assembly});
+    places.insert(places.end(), member.at_start.data(), member.at_start.data() + 3);
+  }
+  const std::uint64_t rows = members_.size();
+  write_whole<std::int64_t>(archive, communicator, group + "/assembly_members", numbers, {rows, 2});
+  write_whole<double>(archive, communicator, group + "/assembly_places_at_start", places, {rows, 3});
 }
 
 void Assemblies::load(ArchiveReader& archive, const std::string& group) {
@@ -80,13 +75,12 @@ void Assemblies::load(ArchiveReader& archive, const std::string& group) {
   if (motions_.empty()) return;
   if (!archive.has(group + "/assembly_members"))
     throw InputError("The saved grains have no rigid assemblies, but this case has; the populations must be the same.");
-  const std::uint64_t rows = archive.shape(group + "/assembly_members").at(0);
-  std::vector<std::int64_t> numbers(2 * rows);
-  std::vector<double> places(3 * rows);
-  archive.read(group + "/assembly_members", numbers, {{rows, 2}, {0, 0}, {rows, 2}});
-  archive.read(group + "/assembly_places_at_start", places, {{rows, 3}, {0, 0}, {rows, 3}});
+  const auto numbers = read_whole<std::int64_t>(archive, group + "/assembly_members");
+  const auto places = read_whole<double>(archive, group + "/assembly_places_at_start");
+  if (2 * places.size() != 3 * numbers.size())
+    throw InputError("The saved rigid assemblies have more members than places, or fewer; the file is damaged.");
   members_.clear();
-  for (std::size_t m = 0; m < rows; ++m) {
+  for (std::size_t m = 0; 2 * m < numbers.size(); ++m) {
     if (numbers[2 * m + 1] >= static_cast<std::int64_t>(motions_.size()))
       throw InputError(
           fmt::format("The saved grains are of more rigid assemblies than this case has, {}.", motions_.size()));

@@ -20,7 +20,7 @@
 #include "driver/execution/watch_rules.hpp"
 #include "driver/input/case_changes.hpp"
 #include "driver/input/case_reader.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 #include "driver/setup/bed_archive.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"
@@ -136,21 +136,22 @@ constexpr double slow_disk = 1e8;
 // Sets the criteria that end the run early.
 void set_end(const Case& c, loop::LoopPlan& plan) {
   if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
-    plan.enough = {{dem::GrainSystem::restless_diagnostic, static_cast<double>(allowed_restless(c) + 1)}};
-    plan.enough_means = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
+    plan.stop_criteria = {{dem::GrainSystem::restless_diagnostic, static_cast<double>(allowed_restless(c) + 1)}};
+    plan.stop_criteria_meaning = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
   } else if (c.run.until_at_rest) {
-    plan.enough = {{dem::GrainSystem::largest_speed_diagnostic, c.run.until_at_rest->largest_speed},
-                   {dem::GrainSystem::largest_acceleration_diagnostic, c.run.until_at_rest->largest_acceleration}};
-    plan.enough_means = "all grains at rest";
+    plan.stop_criteria = {
+        {dem::GrainSystem::largest_speed_diagnostic, c.run.until_at_rest->largest_speed},
+        {dem::GrainSystem::largest_acceleration_diagnostic, c.run.until_at_rest->largest_acceleration}};
+    plan.stop_criteria_meaning = "all grains at rest";
   } else if (c.run.until_steady) {
-    plan.enough = {{continuum::ContinuumSystem::unsteadiness_diagnostic, c.run.until_steady->unsteadiness}};
-    plan.enough_means = "steady";
-    plan.steps_between_looks_for_enough = 1;  // its steps are long
+    plan.stop_criteria = {{continuum::ContinuumSystem::unsteadiness_diagnostic, c.run.until_steady->unsteadiness}};
+    plan.stop_criteria_meaning = "steady";
+    plan.steps_between_convergence_checks = 1;  // its steps are long
   } else if (c.system == SystemKind::model_fluid && c.model_fluid.ramp) {
-    plan.enough = {
+    plan.stop_criteria = {
         {model_fluid::ModelFluidField::hold_left_diagnostic, std::numeric_limits<double>::min()}};  // none is left
-    plan.enough_means = "motion without end";
-    plan.steps_between_looks_for_enough = 20;  // grains that take off are soon too fast for the time step
+    plan.stop_criteria_meaning = "motion without end";
+    plan.steps_between_convergence_checks = 20;  // grains that take off are soon too fast for the time step
   }
 }
 
@@ -165,7 +166,7 @@ loop::LoopPlan plan_of(const Case& c, const Command& command, const RunPaths& pa
   plan.started = started;
   plan.checkpoint_guess = bytes_of_checkpoint(c) / slow_disk;
   plan.stop_file = paths.folder.stop();
-  plan.between_strokes = loop::seconds_between_strokes();
+  plan.sigcont_to_sigterm_delay = loop::sigcont_to_sigterm_delay();
   plan.largest = history.largest;
   plan.largest_from = history.largest_from;
   plan.write_at_start = !paths.same_folder;
@@ -251,7 +252,7 @@ private:
     const Decomposition partition =
         about_case(command_.path, [&] { return partition_of_run(c, communicator_, identity_.layout, state); });
     system_ = about_case(command_.path, [&] { return build_system(c, communicator_, partition, start); });
-    observers_ = make_observers(c.analysis.observers, run_facts(c),
+    observers_ = make_observers(c.analysis.observers, run_context(c),
                                 {communicator_, *system_->snapshot().decomposition, system_->time_step()});
   }
 

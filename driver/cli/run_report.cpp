@@ -34,9 +34,9 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   for (const auto& [observer, time] : start_point.run_history.since)
     log.line(fmt::format("analysis.{}: averaging starts at {:.6g} s", observer, time));
   log.line(fmt::format("writing {}", folder.path().string()));
-  if (const double strokes = loop::seconds_between_strokes(); strokes > 0.0)
+  if (const double delay = loop::sigcont_to_sigterm_delay(); delay > 0.0)
     log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun allows only {:.2g} s to save)",
-                         shell_word(folder.path().string()), 2.0 * strokes));
+                         shell_word(folder.path().string()), 2.0 * delay));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (bandwidth > 0.0) {
     const double bytes = bytes_per_cell_update(c.fluid.precision == coupling::Precision::single ? 4 : 8);
@@ -94,7 +94,7 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
     return fmt::format(
         "not at rest at the last check (every {} steps): {:.0f} grains are moving, and a share of {:g} at rest allows "
         "{}; continue with --restart and a later --until",
-        plan.steps_between_looks_for_enough,
+        plan.steps_between_convergence_checks,
         find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_diagnostic).value_or(0.0),
         c.run.until_at_rest->quantile, allowed_restless(c));
   const double speed = find_diagnostic(system.diagnostics(), dem::GrainSystem::largest_speed_diagnostic).value_or(0.0);

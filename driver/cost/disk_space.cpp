@@ -3,7 +3,7 @@
 #include "analysis/observers/probes.hpp"
 #include "analysis/observers/tracks.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "analysis/observers/bed_surface.hpp"
 #include "driver/estimate/bed_flow.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace thalweg::driver {
 std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const System& system) {
   const Snapshot snapshot = system.snapshot();
   if (snapshot.grains.global_count == 0 || periodic_axes(c.domain)[2]) return {};
-  const auto surface = make_observer(analysis::BedSurfaceKeys{}, run_facts(c),
+  const auto surface = make_observer(analysis::BedSurfaceKeys{}, run_context(c),
                                      {communicator, *snapshot.decomposition, system.time_step()});
   surface->observe(snapshot);
   std::vector<Diagnostic> bed;

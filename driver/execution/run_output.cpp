@@ -3,7 +3,7 @@
 #include "core/parallel/on_first_rank.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/reference_grain.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"
 #include "io/hdf5/profile_file.hpp"
@@ -21,12 +21,9 @@ static std::vector<Diagnostic> constants_of(const Case& c) {
   return {{"reference_diameter", "m", reference.diameter}, {"reference_density", "kg/m^3", reference.density}};
 }
 
-static std::vector<io::SeriesTable::Column> series_columns(const std::vector<Diagnostic>& row,
-                                                           const std::vector<Diagnostic>& constants) {
-  std::vector<io::SeriesTable::Column> columns;
-  for (const auto* diagnostics : {&row, &constants})
-    for (const Diagnostic& diagnostic : *diagnostics) columns.push_back({diagnostic.name, diagnostic.unit});
-  return columns;
+static std::vector<Diagnostic> joined(std::vector<Diagnostic> row, const std::vector<Diagnostic>& constants) {
+  row.insert(row.end(), constants.begin(), constants.end());
+  return row;
 }
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
@@ -41,7 +38,7 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
       continue_from_(continue_from),
       kept_case_(kept_case_of(c)),
       constants_(constants_of(c)),
-      columns_(series_columns(row, constants_)) {
+      columns_(joined(row, constants_)) {
   if (continue_from && c.output.series.every > 0.0)
     io::SeriesTable::check_columns(communicator, folder.series(), columns_);
   for (const auto& observer : observers) {
@@ -131,10 +128,7 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
 }
 
 void RunOutput::write_row(double time, const std::vector<Diagnostic>& measured) {
-  std::vector<double> values;
-  for (const auto* diagnostics : {&measured, &std::as_const(constants_)})
-    for (const Diagnostic& diagnostic : *diagnostics) values.push_back(diagnostic.value);
-  series_->append(time, values);
+  series_->append(time, joined(measured, constants_));
 }
 
 // Called with each checkpoint and at the end.

@@ -63,7 +63,7 @@ private:
   std::optional<double> continue_from_;                     // the time of the system's state, s
   std::string kept_case_;                                   // for checkpoints
   std::vector<Diagnostic> constants_;                       // of the run, in every row of the series
-  std::vector<io::SeriesTable::Column> columns_;            // of the series
+  io::SeriesColumns columns_;                               // of the series
   std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise

@@ -5,7 +5,7 @@
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/input/grain_checks.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -264,7 +264,7 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_observers(const Case& c, const io::YamlDocument& document) {
-  at_place(document, "analysis", [&] { check(c.analysis.observers, run_facts(c)); });
+  at_place(document, "analysis", [&] { check(c.analysis.observers, run_context(c)); });
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/stability.hpp"
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 #include "driver/plan/consistent_remedy.hpp"
 #include "driver/plan/contact_warnings.hpp"
 #include "driver/plan/drive_warnings.hpp"
@@ -284,7 +284,7 @@ Warnings fast_model_fluid(const Case& c) {
 
 Warnings of_sentences(const std::vector<std::string>& sentences) { return {sentences.begin(), sentences.end()}; }
 
-Warnings observer_warnings(const Case& c) { return of_sentences(warnings(c.analysis.observers, run_facts(c))); }
+Warnings observer_warnings(const Case& c) { return of_sentences(warnings(c.analysis.observers, run_context(c))); }
 Warnings drives(const Case& c) { return of_sentences(drive_warnings(c)); }
 
 template <Warnings (*rule)(const Case&)>

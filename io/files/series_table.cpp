@@ -15,13 +15,7 @@
 namespace thalweg::io {
 namespace {
 
-std::string header_of(const std::vector<SeriesTable::Column>& columns) {
-  std::string header = "time [s]";
-  for (const auto& column : columns) header += fmt::format(",{} [{}]", column.name, column.unit);
-  return header + "\n";
-}
-
-// The rows of an existing file up to a time. A last line without its newline was being written when the run ended.
+// Rows of an existing file up to a time. A last line without its newline was cut short by the end of the run.
 std::string kept_rows(const std::string& text, std::size_t start, double continue_from) {
   std::string rows;
   while (start < text.size()) {
@@ -39,7 +33,7 @@ std::string cannot_write_series(const std::filesystem::path& path) {
   return fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path.string());
 }
 
-// Throws InputError where the text of a file does not begin with this header; an empty file can be continued.
+// Throws InputError if the text of a file does not begin with this header; an empty file can be continued.
 void refuse_other_columns(const std::filesystem::path& path, const std::string& text, const std::string& header) {
   if (text.empty() || text.starts_with(header)) return;
   throw InputError(
@@ -48,7 +42,7 @@ void refuse_other_columns(const std::filesystem::path& path, const std::string& 
                   path.string(), header.substr(0, header.size() - 1)));
 }
 
-// work: with the file, on rank 0. Anything but an InputError means that it cannot be written.
+// Does work with the file on rank 0. Any error but an InputError means that the file cannot be written.
 void act(MPI_Comm communicator, const std::filesystem::path& path, const std::function<void()>& work) {
   on_first_rank(communicator, [&] {
     try {
@@ -64,17 +58,17 @@ void act(MPI_Comm communicator, const std::filesystem::path& path, const std::fu
 }  // namespace
 
 void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::path& path,
-                                const std::vector<Column>& columns) {
+                                const SeriesColumns& columns) {
   act(communicator, path, [&] {
-    if (std::filesystem::exists(path)) refuse_other_columns(path, read_text(path), header_of(columns));
+    if (std::filesystem::exists(path)) refuse_other_columns(path, read_text(path), columns.header() + "\n");
   });
 }
 
-SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
+SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, SeriesColumns columns,
                          std::optional<double> continue_from)
     : communicator_(communicator), path_(std::move(path)), columns_(std::move(columns)) {
   act(communicator_, path_, [&] {
-    const std::string header = header_of(columns_);
+    const std::string header = columns_.header() + "\n";
     std::string rows;
     if (continue_from && std::filesystem::exists(path_)) {
       const std::string text = read_text(path_);
@@ -87,11 +81,12 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, std:
   });
 }
 
-void SeriesTable::append(double time, std::span<const double> values) {
+void SeriesTable::append(double time, std::span<const Diagnostic> row) {
+  const std::vector<double> values = columns_.values_of(row);
   if (rank_of(communicator_) == 0) {
-    std::string row = fmt::format("{}", time);
-    for (const double value : values) row += fmt::format(",{}", value);
-    file_ << row << '\n';
+    std::string line = fmt::format("{}", time);
+    for (const double value : values) line += fmt::format(",{}", value);
+    file_ << line << '\n';
     file_.flush();
   }
   throw_if_failed(rank_of(communicator_) == 0 && !file_);

@@ -1,14 +1,14 @@
 // series.csv: one row of numbers per time, under a header that names each column and its unit: time [s],q_star [1],...
 #pragma once
 
+#include "io/files/series_columns.hpp"
+
 #include <mpi.h>
 
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace thalweg::io {
 
@@ -16,24 +16,19 @@ namespace thalweg::io {
 // collective and throw RunError on every rank if the file cannot be written.
 class SeriesTable {
 public:
-  struct Column {
-    std::string name;
-    std::string unit;  // "1" for none
-  };
-
-  // columns: after the first, which is always time [s]. continue_from: take up an existing file and drop the rows after
-  // that time (s), and a last row cut short; a file with other columns is an InputError. Empty: a new file.
-  SeriesTable(MPI_Comm communicator, std::filesystem::path path, std::vector<Column> columns,
+  // continue_from: time (s) up to which an existing file is kept; later rows and a last row cut short are dropped, and
+  // a file with other columns is an InputError. Empty: a new file.
+  SeriesTable(MPI_Comm communicator, std::filesystem::path path, SeriesColumns columns,
               std::optional<double> continue_from = std::nullopt);
 
   // Throws the InputError of the constructor, on every rank, before anything is written. Collective.
-  static void check_columns(MPI_Comm communicator, const std::filesystem::path& path,
-                            const std::vector<Column>& columns);
+  static void check_columns(MPI_Comm communicator, const std::filesystem::path& path, const SeriesColumns& columns);
 
-  // Appends a row, in the file before this returns. values: one per column; only rank 0's are used.
-  void append(double time, std::span<const double> values);
+  // Appends a row, which is in the file when this returns; only rank 0's values are used. Throws std::logic_error, on
+  // every rank, if the row has other columns.
+  void append(double time, std::span<const Diagnostic> row);
 
-  // The rows so far outlast a loss of power once this returns.
+  // Makes the rows so far outlast a loss of power.
   void put_on_disk();
 
 private:
@@ -41,7 +36,7 @@ private:
 
   MPI_Comm communicator_;
   std::filesystem::path path_;
-  std::vector<Column> columns_;
+  SeriesColumns columns_;
   std::ofstream file_;
 };
 

@@ -1,126 +1,21 @@
 #include "loop/time_loop.hpp"
 
 #include "core/base/error.hpp"
-#include "core/parallel/mpi_session.hpp"
 #include "core/sums/sum_range.hpp"
-#include "loop/phase_shares.hpp"
-#include "loop/stop_request.hpp"
+#include "tests/loop/time_loop_bench.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <algorithm>
-
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
+#include <chrono>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <thread>
 
 namespace thalweg::loop::time_loop_test {
 namespace {
 
-const MPI_Comm world = MPI_COMM_WORLD;
-
-// Counts its steps, and has one diagnostic that follows a given function of the step.
-class Counter : public System {
-public:
-  std::function<double(std::int64_t)> lattice_velocity = [](std::int64_t) { return 0.05; };
-  std::function<void(std::int64_t)> on_advance = [](std::int64_t) {};
-
-  explicit Counter(std::int64_t start = 0) : step_(start) {}
-  void advance() override {
-    const auto scope = timer_.measure(timer_.phase("counting"));
-    ++step_;
-    on_advance(step_);
-  }
-  std::int64_t step() const override { return step_; }
-  double time_step() const override { return 0.001; }
-  Snapshot snapshot() const override {
-    Snapshot snapshot;
-    snapshot.time = time();
-    snapshot.step = step_;
-    return snapshot;
-  }
-  std::vector<Diagnostic> diagnostics() const override {
-    return {{"largest_lattice_velocity", "1", lattice_velocity(step_)}};
-  }
-  void save(ArchiveWriter&) const override {}
-  void load(ArchiveReader&) override {}
-  PhaseTimer& timer() override { return timer_; }
-  std::int64_t cells() const override { return 1000; }
-  std::int64_t grain_steps_per_step() const override { return 20; }
-
-private:
-  std::int64_t step_;
-  PhaseTimer timer_;
-};
-
-class LooksOn : public analysis::Observer {
-public:
-  explicit LooksOn(double every = 0.0, bool in_passing = false) : every_(every), in_passing_(in_passing) {}
-  double every() const override { return every_; }
-  bool in_passing() const override { return in_passing_; }
-  std::string name() const override { return "looks_on"; }
-  void observe(const Snapshot& snapshot) override { steps.push_back(snapshot.step); }
-  std::vector<Diagnostic> diagnostics() const override { return {{"seen", "1", static_cast<double>(steps.size())}}; }
-  void save(ArchiveWriter&) const override {}
-  bool load(ArchiveReader&) override { return true; }
-  std::vector<std::int64_t> steps;
-
-private:
-  double every_;
-  bool in_passing_;
-};
-
-// What the loop did, and the loop itself.
-struct Bench {
-  explicit Bench(double until, std::int64_t start = 0) : system(start) {
-    listen_for_stop_signals();  // forget the signal of an earlier test
-    plan.until = until;
-    plan.watch = {{"largest_lattice_velocity", WatchRule::Side::above,
-                   [](const std::vector<Diagnostic>&) {
-                     return WatchLimits{0.2, 0.3};
-                   },
-                   "the speed", "Slow down."}};
-    plan.series = Schedule(0.003, 0.001);
-    plan.checkpoint = Schedule(0.004, 0.001);
-    plan.write_row = [this](double, std::int64_t step, const std::vector<Diagnostic>& row) {
-      rows.push_back(step);
-      columns = row.size();
-    };
-    plan.write_checkpoint = [this](const LoopRecord&) {
-      checkpoints.push_back(system.step());
-      return std::uint64_t{0};
-    };
-    plan.outputs.push_back(
-        {"pictures", Schedule(0.005, 0.001), [this](const Snapshot& s) { pictures.push_back(s.step); }});
-    auto observer = std::make_unique<LooksOn>();
-    looks_on = observer.get();
-    observers.push_back(std::move(observer));
-  }
-  TimeLoop& run() {
-    loop = std::make_unique<TimeLoop>(world, system, observers, plan, log);
-    loop->run();
-    return *loop;
-  }
-  Counter system;
-  std::vector<std::unique_ptr<analysis::Observer>> observers;
-  LooksOn* looks_on;
-  LoopPlan plan;
-  Log log{false};
-  std::unique_ptr<TimeLoop> loop;
-  std::vector<std::int64_t> rows, checkpoints, pictures;
-  std::size_t columns = 0;
-};
-
-using Steps = std::vector<std::int64_t>;
+using namespace time_loop_bench;
 
 TEST(TimeLoop, KeepsEveryBeatBeyondThirtyTwoBitsOfSteps) {
   constexpr std::int64_t start = 6'000'000'000;  // a multiple of 3, 4 and 5
@@ -186,19 +81,19 @@ TEST(TimeLoop, SavesByWallTimeAsWell) {
 
 // Step 7 is looked into unless the observer of every step looks in passing.
 TEST(TimeLoop, DoesNotLookIntoTheSystemForWhoLooksInPassing) {
-  for (const bool in_passing : {false, true}) {
+  for (const bool is_lightweight : {false, true}) {
     Bench bench(0.010);
     bool seen = false;
     bench.system.lattice_velocity = [&seen](std::int64_t step) {
       seen = seen || step == 7;
       return 0.05;
     };
-    auto observer = std::make_unique<LooksOn>(0.001, in_passing);
+    auto observer = std::make_unique<LooksOn>(0.001, is_lightweight);
     const LooksOn& busy = *observer;
     bench.observers.push_back(std::move(observer));
     bench.run();
     EXPECT_EQ(busy.steps.size(), 11u);
-    EXPECT_EQ(seen, !in_passing);
+    EXPECT_EQ(seen, !is_lightweight);
   }
 }
 
@@ -304,180 +199,6 @@ TEST(TimeLoop, RecordsWarningsAndTheLargestOfItsOwnLooks) {
   const LoopRecord& record = bench.run().record();
   EXPECT_EQ(record.warnings, 1);
   EXPECT_EQ(record.largest.front().value, 0.25);
-}
-
-TEST(TimeLoop, StopsAtTheSameStepEverywhereWhenTheWallTimeIsUp) {
-  Bench bench(1e9);
-  bench.plan.checkpoint = bench.plan.series = Schedule();
-  bench.plan.outputs.clear();
-  bench.plan.walltime = 0.5;
-  bench.plan.started = WallClock::now();
-  bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
-  const auto start = WallClock::now();
-  const LoopRecord& record = bench.run().record();
-  EXPECT_LT(std::chrono::duration<double>(WallClock::now() - start).count(), 2.0);  // 0.5 s and a busy machine
-  EXPECT_FALSE(record.finished);
-  EXPECT_NE(record.reason.find("wall time"), std::string::npos);
-  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
-  EXPECT_EQ(sum_over_ranks(world, record.last_step), record.last_step * size_of(world));
-}
-
-// A checkpoint that takes a fifth of the wall time would be too late where none has been timed before; a guess that is
-// too large costs one checkpoint more and ends nothing early.
-TEST(TimeLoop, WritesAFirstCheckpointInTimeToKnowHowLongTheLastOneTakes) {
-  for (const double guess : {1.0, 1000.0}) {
-    Bench bench(1e9);
-    bench.plan.checkpoint = bench.plan.series = Schedule();
-    bench.plan.outputs.clear();
-    bench.plan.walltime = 3.0;
-    bench.plan.checkpoint_guess = guess;
-    bench.plan.started = WallClock::now();
-    bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::microseconds(200)); };
-    bench.plan.write_checkpoint = [&bench](const LoopRecord&) {
-      bench.checkpoints.push_back(bench.system.step());
-      std::this_thread::sleep_for(std::chrono::milliseconds(400));
-      return std::uint64_t{0};
-    };
-    const LoopRecord& record = bench.run().record();
-    EXPECT_LT(std::chrono::duration<double>(WallClock::now() - bench.plan.started).count(), bench.plan.walltime);
-    EXPECT_GT(record.wall_seconds, 1.2);
-    EXPECT_EQ(bench.checkpoints.size(), 2u);
-  }
-}
-
-TEST(TimeLoop, StopsEverywhereWhenOneRankReceivesASignal) {
-  Bench bench(1e9);
-  bench.plan.checkpoint = Schedule();
-  bench.system.on_advance = [](std::int64_t step) {
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-    if (step == 50 && rank_of(world) == size_of(world) - 1) std::raise(SIGUSR1);
-  };
-  const LoopRecord& record = bench.run().record();
-  EXPECT_FALSE(record.finished);
-  EXPECT_EQ(record.reason, "stopped by SIGUSR1");
-  EXPECT_GE(record.last_step, 50);
-  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
-}
-
-// Whoever asks means it, also where a job ends at the same moment.
-TEST(TimeLoop, ARequestToStopCountsMoreThanASignal) {
-  const std::filesystem::path request = fmt::format("stop_of_{}_ranks", size_of(world));
-  for (const bool signal : {false, true}) {
-    Bench bench(1e9);
-    bench.plan.checkpoint = Schedule();
-    bench.plan.stop_file = request;
-    bench.system.on_advance = [&](std::int64_t step) {
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
-      if (step != 50) return;
-      MPI_Barrier(world);  // no decision is taken meanwhile
-      if (rank_of(world) == 0) std::ofstream{request};
-      if (signal) std::raise(SIGUSR1);
-    };
-    const LoopRecord& record = bench.run().record();
-    EXPECT_FALSE(record.finished);
-    EXPECT_TRUE(record.asked);
-    EXPECT_EQ(record.reason, stopped_on_request);
-    EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
-    EXPECT_FALSE(std::filesystem::exists(request));
-  }
-}
-
-// Open MPI's mpirun kills in three strokes, SIGCONT, SIGTERM, SIGKILL; the first of them saves.
-class Strokes : public testing::Test {
-protected:
-  Strokes() {
-    setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank_of(world)).c_str(), 1);  // also without mpirun
-    unsetenv("PRTE_LAUNCHED");                                                  // and with that of Open MPI 5
-  }
-};
-
-TEST_F(Strokes, AreASecondApartUnlessMpirunIsToldOtherwise) {
-  unsetenv("OMPI_MCA_odls_base_sigkill_timeout");
-  EXPECT_EQ(seconds_between_strokes(), 1.0);
-  setenv("OMPI_MCA_odls_base_sigkill_timeout", "7", 1);
-  EXPECT_EQ(seconds_between_strokes(), 7.0);
-  setenv("PRTE_LAUNCHED", "1", 1);  // Open MPI 5 is not to be told
-  EXPECT_EQ(seconds_between_strokes(), 0.25);
-  unsetenv("PRTE_LAUNCHED");
-  unsetenv("OMPI_MCA_odls_base_sigkill_timeout");
-}
-
-TEST_F(Strokes, TheFirstSavesAndTheSecondStopsThere) {
-  Bench bench(1e9);
-  bench.plan.checkpoint = Schedule();
-  bench.plan.between_strokes = 10.0;
-  bench.system.on_advance = [](std::int64_t step) {
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-    if (step == 50 && rank_of(world) == size_of(world) - 1) std::raise(SIGCONT);
-  };
-  bench.plan.write_checkpoint = [&bench](const LoopRecord&) {
-    bench.checkpoints.push_back(bench.system.step());
-    std::raise(SIGTERM);  // comes while the checkpoint is written: nothing is written twice
-    return std::uint64_t{0};
-  };
-  const LoopRecord& record = bench.run().record();
-  EXPECT_EQ(record.reason, "stopped by SIGTERM");
-  EXPECT_GE(record.last_step, 50);
-  EXPECT_EQ(bench.checkpoints, (Steps{record.last_step}));
-}
-
-TEST_F(Strokes, WithoutASecondTheRunGoesOn) {
-  Bench bench(0.2);
-  bench.plan.checkpoint = Schedule();
-  bench.plan.between_strokes = 0.01;
-  bench.system.on_advance = [](std::int64_t step) {
-    if (step == 50) std::raise(SIGCONT);
-  };
-  const LoopRecord& record = bench.run().record();
-  EXPECT_TRUE(record.finished);
-  ASSERT_EQ(bench.checkpoints.size(), 2u);
-  EXPECT_GE(bench.checkpoints[0], 50);
-  EXPECT_EQ(bench.checkpoints[1], 200);
-}
-
-TEST_F(Strokes, ACheckpointThatWouldComeTooLateIsToldOf) {
-  for (const double between : {0.001, 100.0}) {
-    const std::string path = testing::TempDir() + "strokes_" + std::to_string(getpid()) + ".log";
-    Bench bench(0.010);
-    bench.log = Log(true);
-    bench.log.copy_to(path);
-    bench.plan.between_strokes = between;
-    bench.plan.stop_file = "some/run/stop";
-    bench.plan.write_checkpoint = [](const LoopRecord&) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      return std::uint64_t{0};
-    };
-    bench.run();
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    EXPECT_EQ(text.str().find("thalweg stop some/run,") != std::string::npos, between < 1.0);
-    std::remove(path.c_str());
-  }
-}
-
-TEST(Summary, AccountsForTheWholeWallTime) {
-  Bench bench(0.050);
-  bench.system.on_advance = [](std::int64_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
-  TimeLoop& loop = bench.run();
-  const std::vector<PhaseShare> phases = collect_phases(world, bench.system, loop);
-  if (rank_of(world) == 0) {
-    double mean = 0.0, share = 0.0;
-    for (const PhaseShare& phase : phases) {
-      mean += phase.mean_seconds;
-      share += phase.share;
-      EXPECT_GE(phase.largest_seconds, phase.mean_seconds * (1.0 - 1e-9));
-    }
-    EXPECT_EQ(phases.front().name, "counting");
-    EXPECT_EQ(phases.back().name, "other");
-    EXPECT_GE(phases.front().mean_seconds, 0.050);  // fifty times at least a millisecond
-    EXPECT_NEAR(share, mean / loop.record().wall_seconds, 1e-9);
-    EXPECT_NEAR(mean, loop.record().wall_seconds, 0.2 * loop.record().wall_seconds);  // ranks start a little apart
-    EXPECT_EQ(phase_table(phases).size(), phases.size() + 1);
-  }
-  const Speeds speeds = speeds_of(bench.system, loop.record());
-  EXPECT_NEAR(speeds.steps_per_second * loop.record().wall_seconds, 50.0, 1e-9);
-  EXPECT_NEAR(speeds.mlups, speeds.steps_per_second * 1e-3, 1e-12);
-  EXPECT_NEAR(speeds.grain_steps_per_second, speeds.steps_per_second * 20.0, 1e-6);
 }
 
 }  // namespace

@@ -230,10 +230,10 @@ TEST(BedSurface, BeginsAnewWithOtherSettings) {
 TEST(BedSurface, KnowsWhatDrivesTheWater) {
   const auto diagnostic_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
     Spheres spheres(world);
-    RunFacts run;
+    RunContext run;
     run.box = spheres.box();
     run.gravity = gravity;
-    run.fluid = FluidFacts{1000.0, 1e-6, 1.0, steered, 0, top_drags, top_moves};
+    run.fluid = FluidContext{1000.0, 1e-6, 1.0, steered, 0, top_drags, top_moves};
     run.grains.emplace();
     run.grains->reference_diameter = 1e-3;
     run.grains->reference_density = 3000.0;

@@ -67,7 +67,7 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
 // A model fluid loads grains as water does.
 TEST(PopulationLoads, HasTheLoadOfAModelFluid) {
   const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});
-  RunFacts run;
+  RunContext run;
   run.box = decomposition.box();
   run.grains.emplace();
   run.grains->populations = {{"bed", 0, 3, [](double) { return Vec3::Zero(); }}};

@@ -111,7 +111,7 @@ TEST(Tracks, GoOnAfterARestartOnAnyRanks) {
 TEST(Tracks, AreRefusedOfMoreGrainsThanOneRankGathers) {
   constexpr std::int64_t most = TracksKeys::most_grains;
   const auto facts_of = [](GlobalId count) {
-    RunFacts run;
+    RunContext run;
     run.grains.emplace();
     run.grains->populations.push_back({.name = "all", .first = 0, .end = count, .pivot = {}});
     return run;

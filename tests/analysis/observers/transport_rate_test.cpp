@@ -37,7 +37,7 @@ TEST(TransportRate, IsTheVolumeFluxOfAllGrainsPerWidth) {
   EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 200.0);  // 0.03 m/s itself is not moving
   EXPECT_EQ(value_of(rate.diagnostics(), "moving_share"), 200.0 / 300.0);
   EXPECT_NEAR(value_of(rate.diagnostics(), "activity"), volume * 200.0 / (20.0 * 10.0), 1e-12 * volume);
-  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.results(), "largest_grain_speed"), std::sqrt(2.99 * 2.99 + 1.0), 1e-15 * 4);
 }
 
 TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
@@ -51,7 +51,7 @@ TEST(TransportRate, TakesAClumpForOneGrainWithItsVolumeAtItsCentre) {
   const double q_s = (volume * (sum_of_speeds - gone) + 0.05 * 0.5) / (20.0 * 10.0);
   EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
   EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 197.0);
-  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.results(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
 }
 
 // A plate of grains 0 to 99 that is driven along is no sediment, nor is a clump that is.
@@ -69,7 +69,7 @@ TEST(TransportRate, LeavesOutGrainsWhoseMotionIsGiven) {
   EXPECT_NEAR(value_of(rate.diagnostics(), "q_s"), q_s, 4e-16 * 1e3 * q_s);
   EXPECT_EQ(value_of(rate.diagnostics(), "moving_grains"), 130.0);
   EXPECT_EQ(value_of(rate.diagnostics(), "moving_share"), 130.0 / 194.0);
-  EXPECT_NEAR(value_of(rate.diagnostics(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
+  EXPECT_NEAR(value_of(rate.results(), "largest_grain_speed"), std::sqrt(2.93 * 2.93 + 1.0), 1e-15 * 4);
 }
 
 // Grains of 1 mm and 1.15 times the density of an oil of 1e-4 m^2/s fall at 0.8 mm/s, not at the 38 mm/s of inertia; in
@@ -99,7 +99,7 @@ TEST(TransportRate, HasTheSameBitsOnAnyNumberOfRanks) {
   alone.observe(MadeUpGrains(MPI_COMM_SELF, 1000, made).snapshot(0.0));
   shared.observe(MadeUpGrains(world, 1000, made).snapshot(0.0));
   for (const char* name : {"q_s", "q_star", "moving_grains", "activity", "largest_grain_speed"})
-    EXPECT_EQ(value_of(alone.diagnostics(), name), value_of(shared.diagnostics(), name)) << name;
+    EXPECT_EQ(value_of(alone.results(), name), value_of(shared.results(), name)) << name;
 }
 
 TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {

@@ -23,8 +23,8 @@ std::vector<GlobalId> ids_here(int step) {
   return ids;
 }
 
-TEST(HomeById, AnswersInTheOrderOfTheQuestions) {
-  const HomeById homes(world, count);
+TEST(DistributionById, AnswersInTheOrderOfTheQuestions) {
+  const DistributionById homes(world, count);
   const std::vector<GlobalId> ids = ids_here(3);
   const std::vector<double> answers = homes.ask(ids, [&](GlobalId id) {
     EXPECT_GE(id, homes.begin());
@@ -37,7 +37,7 @@ TEST(HomeById, AnswersInTheOrderOfTheQuestions) {
 
 // Every third grain is watched. Homes are asked for grains that have come, and for no others.
 TEST(WatchedHere, FollowsGrainsFromRankToRank) {
-  const HomeById homes(world, count);
+  const DistributionById homes(world, count);
   WatchedHere watched;
   std::vector<char> chosen;
   for (const GlobalId id : ids_here(0)) chosen.push_back(id % 3 == 0);

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <vector>
 
 namespace thalweg::io::series_table_test {
 namespace {
@@ -14,13 +16,15 @@ using testing::contents;
 using testing::message_of;
 using testing::ScratchFolder;
 
-const std::vector<SeriesTable::Column> columns{{"q_star", "1"}, {"speed", "m/s"}};
+std::vector<Diagnostic> row(double q_star, double speed) { return {{"q_star", "1", q_star}, {"speed", "m/s", speed}}; }
+
+const SeriesColumns columns(row(0.0, 0.0));
 
 TEST(SeriesTable, EveryNumberReadsBackToTheSameBits) {
   const ScratchFolder folder;
   const std::vector<double> values{1.0 / 3.0, -4.9406564584124654e-300};
   SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
-  table.append(0.1 + 0.2, values);
+  table.append(0.1 + 0.2, row(values[0], values[1]));
   const std::string text = contents(folder / "series.csv");  // on the disk while the table is open
   const std::string header = "time [s],q_star [1],speed [m/s]\n";
   ASSERT_EQ(text.substr(0, header.size()), header);
@@ -36,13 +40,35 @@ TEST(SeriesTable, ARestartDropsWhatCameAfterIt) {
   const auto path = folder / "series.csv";
   {
     SeriesTable table(MPI_COMM_WORLD, path, columns);
-    for (int n = 0; n <= 4; ++n) table.append(0.25 * n, std::vector<double>{1.0 * n, 2.0 * n});
+    for (int n = 0; n <= 4; ++n) table.append(0.25 * n, row(1.0 * n, 2.0 * n));
   }
   if (rank_of(MPI_COMM_WORLD) == 0) std::ofstream(path, std::ios::app) << "0.25,0.5";  // cut short by a kill
   MPI_Barrier(MPI_COMM_WORLD);
   SeriesTable table(MPI_COMM_WORLD, path, columns, 0.5);
-  table.append(0.6, std::vector<double>{7.0, 8.0});
+  table.append(0.6, row(7.0, 8.0));
   EXPECT_EQ(contents(path), "time [s],q_star [1],speed [m/s]\n0,0,0\n0.25,1,2\n0.5,2,4\n0.6,7,8\n");
+}
+
+TEST(SeriesTable, ARowWithOtherColumnsIsRefusedAndNotWritten) {
+  const ScratchFolder folder;
+  SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
+  const std::vector<Diagnostic> good = row(1.0, 2.0);
+  EXPECT_EQ(message_of<std::logic_error>([&] { table.append(0.1, std::vector{good[0]}); }),
+            "a row of the series has 1 values for 2 columns");
+  EXPECT_EQ(message_of<std::logic_error>([&] {
+              table.append(0.1, std::vector{good[1], good[0]});
+            }),
+            "a row of the series has speed in column q_star");
+  table.append(0.2, good);
+  EXPECT_EQ(contents(folder / "series.csv"), "time [s],q_star [1],speed [m/s]\n0.2,1,2\n");
+}
+
+TEST(SeriesTable, AColumnOfTwoSourcesIsRefused) {
+  std::vector<Diagnostic> twice = row(1.0, 2.0);
+  twice.push_back({"q_star", "1", 3.0});
+  EXPECT_NE(
+      message_of<InputError>([&] { SeriesColumns{twice}; }).find("Two columns of the series have the name q_star;"),
+      std::string::npos);
 }
 
 TEST(SeriesTable, ANewTableForgetsAnOldFile) {

@@ -14,7 +14,7 @@
 
 namespace thalweg::analysis {
 
-struct FluidFacts {
+struct FluidContext {
   double density = 0.0;              // kg/m^3
   double kinematic_viscosity = 0.0;  // m^2/s
   double velocity_unit = 0.0;        // m/s of one cell a step
@@ -25,13 +25,13 @@ struct FluidFacts {
 };
 
 // Of a model fluid (model_fluid/model_fluid.hpp).
-struct ModelFluidFacts {
+struct ModelFluidContext {
   double speed = 0.0;    // m/s, v_0, of the first Shields number
   double gravity = 0.0;  // m/s^2, reduced
 };
 
 // Grains of a case that belong together, with the ids first ... end - 1.
-struct Population {
+struct PopulationContext {
   std::string name;  // of its columns
   GlobalId first = 0, end = 0;
   std::function<Vec3(double time)> pivot;  // m, of its torque at a time (s)
@@ -44,8 +44,8 @@ struct HeldGrains {
 };
 bool is_held(const std::vector<HeldGrains>& held, GlobalId id);
 
-struct GrainFacts {
-  std::vector<Population> populations;
+struct GrainContext {
+  std::vector<PopulationContext> populations;
   double reference_diameter = 0.0;  // m, d of q* and the Shields number
   double reference_density = 0.0;   // kg/m^3
   double smallest_diameter = 0.0;   // m, of spheres and members of clumps
@@ -64,14 +64,14 @@ struct GrainFacts {
   bool any_clumps() const;
 };
 
-struct RunFacts {
+struct RunContext {
   PeriodicBox box;
   double until = 0.0;           // s, the end of the run
   double ramp = 0.0;            // s in which gravity rises
   Vec3 gravity = Vec3::Zero();  // m/s^2
-  std::optional<FluidFacts> fluid;
-  std::optional<ModelFluidFacts> model_fluid;
-  std::optional<GrainFacts> grains;
+  std::optional<FluidContext> fluid;
+  std::optional<ModelFluidContext> model_fluid;
+  std::optional<GrainContext> grains;
 };
 
 // The system an observer is made for.

@@ -1,12 +1,12 @@
 // From a case to what its observers, and the frames of its grains, may know of it.
 #pragma once
 
-#include "analysis/observer/run_facts.hpp"
+#include "analysis/observer/run_context.hpp"
 #include "driver/case/case.hpp"
 
 namespace thalweg::driver {
 
-analysis::RunFacts run_facts(const Case& c);
+analysis::RunContext run_context(const Case& c);
 
 // Facts for the frames of the grains.
 io::PopulationEnds population_ends(const Case& c);

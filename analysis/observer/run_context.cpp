@@ -1,4 +1,4 @@
-#include "analysis/observer/run_facts.hpp"
+#include "analysis/observer/run_context.hpp"
 
 #include <algorithm>
 
@@ -9,15 +9,15 @@ bool is_held(const std::vector<HeldGrains>& held, GlobalId id) {
                      [id](const HeldGrains& some) { return id >= some.first && id < some.end; });
 }
 
-std::vector<HeldGrains> GrainFacts::held() const {
+std::vector<HeldGrains> GrainContext::held() const {
   std::vector<HeldGrains> found;
-  for (const Population& population : populations)
+  for (const PopulationContext& population : populations)
     if (population.held) found.push_back({population.first, population.end});
   return found;
 }
 
-bool GrainFacts::any_clumps() const {
-  return std::any_of(populations.begin(), populations.end(), [](const Population& some) { return some.clumps; });
+bool GrainContext::any_clumps() const {
+  return std::any_of(populations.begin(), populations.end(), [](const PopulationContext& some) { return some.clumps; });
 }
 
 }  // namespace thalweg::analysis

@@ -1,4 +1,4 @@
-#include "driver/input/run_facts.hpp"
+#include "driver/input/run_context.hpp"
 
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/estimate/obstacles.hpp"
@@ -13,8 +13,8 @@ namespace thalweg::driver {
 namespace {
 
 // The ids of grains count population by population (grain_seeds()).
-std::vector<analysis::Population> populations_of(const Case& c) {
-  std::vector<analysis::Population> populations;
+std::vector<analysis::PopulationContext> populations_of(const Case& c) {
+  std::vector<analysis::PopulationContext> populations;
   GlobalId first = 0;
   for (std::size_t p = 0; p < c.grains.size(); ++p) {
     const beds::Population& grains = c.grains[p];
@@ -30,7 +30,7 @@ std::vector<analysis::Population> populations_of(const Case& c) {
   return populations;
 }
 
-analysis::FluidFacts fluid_facts(const Case& c) {
+analysis::FluidContext fluid_context(const Case& c) {
   return {c.fluid.density,
           c.fluid.kinematic_viscosity,
           units_of(c).velocity(),
@@ -40,33 +40,33 @@ analysis::FluidFacts fluid_facts(const Case& c) {
           c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0};
 }
 
-analysis::GrainFacts grain_facts(const Case& c) {
+analysis::GrainContext grain_context(const Case& c) {
   const ReferenceGrain reference = reference_grain(c);
-  analysis::GrainFacts facts{populations_of(c),    reference.diameter,  reference.density,
-                             smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
-  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) facts.obstacles.push_back(sphere.id);
-  if (!has_fluid(c)) return facts;
-  facts.body_force = body_force(c);
-  facts.submerged_weight = submerged_weight(c);
-  facts.buoyancy = buoyancy_in_load(c);
-  return facts;
+  analysis::GrainContext context{populations_of(c),    reference.diameter,  reference.density,
+                                 smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
+  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.push_back(sphere.id);
+  if (!has_fluid(c)) return context;
+  context.body_force = body_force(c);
+  context.submerged_weight = submerged_weight(c);
+  context.buoyancy = buoyancy_in_load(c);
+  return context;
 }
 
 }  // namespace
 
-analysis::RunFacts run_facts(const Case& c) {
-  analysis::RunFacts facts;
-  facts.box = {c.domain.size, periodic_axes(c.domain)};
-  facts.until = c.run.until;
-  facts.ramp = c.run.ramp;
-  facts.gravity = gravity_vector(c.gravity);
-  if (has_fluid(c)) facts.fluid = fluid_facts(c);
+analysis::RunContext run_context(const Case& c) {
+  analysis::RunContext context;
+  context.box = {c.domain.size, periodic_axes(c.domain)};
+  context.until = c.run.until;
+  context.ramp = c.run.ramp;
+  context.gravity = gravity_vector(c.gravity);
+  if (has_fluid(c)) context.fluid = fluid_context(c);
   if (c.system == SystemKind::model_fluid) {
     const model_fluid::ModelFluidParameters fluid = model_fluid_of(c);
-    facts.model_fluid = {coefficients_of(fluid.numbers, fluid.scales).velocity, fluid.scales.gravity};
+    context.model_fluid = {coefficients_of(fluid.numbers, fluid.scales).velocity, fluid.scales.gravity};
   }
-  if (!c.grains.empty()) facts.grains = grain_facts(c);
-  return facts;
+  if (!c.grains.empty()) context.grains = grain_context(c);
+  return context;
 }
 
 io::PopulationEnds population_ends(const Case& c) {

@@ -15,10 +15,10 @@
 
 namespace thalweg::analysis {
 
-class HomeById {
+class DistributionById {
 public:
   // count: ids are 0 ... count - 1.
-  HomeById(MPI_Comm communicator, GlobalId count) : communicator_(communicator), count_(count) {
+  DistributionById(MPI_Comm communicator, GlobalId count) : communicator_(communicator), count_(count) {
     const int ranks = thalweg::size_of(communicator);
     share_ = std::max<GlobalId>(1, (count + ranks - 1) / ranks);
     begin_ = std::min(count, share_ * thalweg::rank_of(communicator));
