@@ -270,6 +270,19 @@ class Sweep(ProgramTest):
         self.run_well("sweep", sweep, "--tables")
         self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
 
+    def test_warnings_are_passed_on_once_with_the_names_of_the_runs(self):
+        # Rows every 1e-7 s are less than a step of 5e-6 s; the third run has no such warning.
+        sweep = self.write("set: {run.until: 0.001}\nvary: {output.series.every: [1.0e-7, 2.0e-7, 5.0e-4]}\n")
+        text = "less than a step"
+        planned = self.run_well("sweep", sweep, "--dry-run").stdout
+        done = self.run_well("sweep", sweep).stdout
+        for said in (planned, done):
+            said = " ".join(said.split())
+            self.assertEqual(said.count(text), 1, said)
+            self.assertIn("warning: every_1e-07, every_2e-07 (the numbers are those of every_1e-07): output.series.every", said)
+        rows = {row["run"]: row["warnings"] for row in self.table("sweep/runs.csv")}
+        self.assertEqual(rows, {"every_1e-07": "1", "every_2e-07": "1", "every_0.0005": "0"})
+
     def test_tables_in_grain_units_do_not_name_those_of_si(self):
         model_fluid = Path(__file__).resolve().parents[2] / "cases/model_fluid/case.yaml"
         (self.folder / "grain.yaml").write_text(f"case: {model_fluid}\nset: {{run.until: 0.1, run.until_at_rest: null}}\n"
@@ -277,8 +290,8 @@ class Sweep(ProgramTest):
                                                 "columns: [simulated_time, figures.largest_grain_speed]\n")
         self.run_well("sweep", "grain.yaml")
         self.assertEqual(list(self.table("grain/runs.csv")[0]),
-                         ["run", "run.until", "run.until_at_rest", "model_fluid.shields_number [1]", "state", "version",
-                          "wall_time [s]", "simulated_time", "figures.largest_grain_speed", "failure"])
+                         ["run", "run.until", "run.until_at_rest", "model_fluid.shields_number [1]", "state", "warnings",
+                          "version", "wall_time [s]", "simulated_time", "figures.largest_grain_speed", "failure"])
 
     def test_refusals(self):
         self.assert_refused("sweep", self.write("", "small.yaml"), "--jobs", "0", words=["--jobs 0"])

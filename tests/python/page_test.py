@@ -17,7 +17,7 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import made_up_profiles  # noqa: E402
 import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
-from thalweg.page.history import sessions_of, settings_in, warnings_of  # noqa: E402
+from thalweg.history import sessions_of, settings_in, warnings_of  # noqa: E402
 from thalweg.page.sections import page_of  # noqa: E402
 
 LOG = """Thalweg 0.1.0 (aaa): Made up

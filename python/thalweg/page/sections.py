@@ -9,7 +9,7 @@ from thalweg.errors import RunFolderError
 from thalweg.figures import fluid_profiles, overview, transport_rate
 from thalweg.page import html
 from thalweg.page.figures import column_figure, series_figure
-from thalweg.page.history import command_of, sessions_of, settings_in, warnings_of
+from thalweg.history import command_of, sessions_of, settings_in, warnings_of
 from thalweg.transport import transport
 
 SYSTEMS = {"resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains", "model_fluid": "grains in a model fluid",

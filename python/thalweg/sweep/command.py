@@ -1,4 +1,5 @@
 """The command `thalweg sweep`."""
+import functools
 import os
 import shlex
 import shutil
@@ -13,6 +14,7 @@ from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import DONE, FAILED, check_command, name_of
 from thalweg.sweep.tables import those_without_dimension, units_of_keys, write_tables
 from thalweg.sweep.tasks import known_runs, tasks_of
+from thalweg.sweep.warnings import lines_of, said_by_checks
 
 STOPPED = 3   # exit code of thalweg run
 
@@ -26,7 +28,7 @@ def add_to(commands):
                        help="Where runs and tables go (default: named after the file, beside it)")
     sweep.add_argument("--jobs", type=int, metavar="N", help="Runs at a time (default: a core a rank, as far as the memory goes)")
     sweep.add_argument("--retry", action="store_true", help="Run those again that have failed")
-    sweep.add_argument("--dry-run", action="store_true", help="Print the runs, or the bisections, and stop")
+    sweep.add_argument("--dry-run", action="store_true", help="Print the runs, or the bisections, and what thalweg check warns of, and stop")
     sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, from 0 on")
     sweep.add_argument("--tables", action="store_true", help="Only write the tables of what there is")
     sweep.add_argument("--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection")
@@ -64,6 +66,18 @@ def refuse_impossible(plan, tasks):
 
 def describe(task, keys):
     return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
+
+
+def list_tasks(plan, tasks):
+    """What there is to run, and what `thalweg check` warns of: of a bisection at the ends of its range."""
+    for number, task in enumerate(tasks):
+        print(f"{number:<5}{describe(task, plan.keys)}{'' if plan.bisections else f': {task.run.state}'}", flush=True)
+    ends = [settings for task in tasks for settings in task.ends()]
+    checks = [functools.partial(asked, check_command(program(), plan.case, settings)) for settings in ends]
+    keys = list(dict.fromkeys(key for settings in ends for key in settings))
+    names = [name_of(settings, plan.naming_keys if not plan.bisections else keys) for settings in ends]
+    for line in lines_of(said_by_checks(names, checks)):
+        print(line)
 
 
 def slurm_job(wanted, count, ranks, folder):
@@ -109,8 +123,7 @@ def sweep(wanted):
         print(slurm_job(wanted, len(tasks), plan.ranks, folder), end="")
         return 0
     if wanted.dry_run:
-        for number, task in enumerate(tasks):
-            print(f"{number:<5}{describe(task, plan.keys)}{'' if plan.bisections else f': {task.run.state}'}")
+        list_tasks(plan, tasks)
         return 0
     if wanted.task is not None:
         if not 0 <= wanted.task < len(tasks):
@@ -133,6 +146,8 @@ def sweep(wanted):
 def written(plan, tasks, units, folder):
     runs = known_runs(tasks)
     files = write_tables(plan, tasks, units, folder)
+    for line in lines_of((run.name, run.warnings) for run in runs):
+        print(line)
     print(f"written {', '.join(str(file) for file in files)}")
     versions = sorted({run.version for run in runs if run.state == DONE})
     if len(versions) > 1:

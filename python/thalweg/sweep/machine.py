@@ -15,6 +15,11 @@ def told(name):
         raise SweepError(f"{name} does not say what this machine has; start this as `thalweg sweep`, or give --jobs.") from None
 
 
+def cores():
+    """That this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 def memory_needed(report):
     """By what `thalweg check` has printed, bytes; 0 if it does not say."""
     found = re.search(r"^memory +about ([0-9.e+]+) (MB|GB|TB) on one rank", report, re.MULTILINE)

@@ -16,6 +16,7 @@ import subprocess
 from pathlib import Path
 
 from thalweg.case_file import setting_of
+from thalweg.history import sessions_of, warnings_of
 from thalweg.sweep.inputs import SweepError, inputs_of
 
 LONGEST_NAME = 150   # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
@@ -91,6 +92,11 @@ class SweepRun:
     def version(self):
         """Of the program, as `thalweg --version` says."""
         return str(self.summary["version"]) if self.summary else ""
+
+    @property
+    def warnings(self):
+        """What the run has warned of in all its sessions, each once."""
+        return warnings_of(sessions_of(self.folder))
 
     def command(self, program):
         arguments = ["run", str(self.case), f"--out={self.folder}", "--resume"] + set_options(self.settings)

@@ -28,14 +28,18 @@ def runs_table(plan, runs, units):
         measured |= (run.summary or {}).get("units", {})
     if plan.in_grain_units:
         measured = those_without_dimension(measured)
-    head = (["run"] + [headed(key, units) for key in keys] + ["state", "version", "wall_time [s]"] +
+    head = (["run"] + [headed(key, units) for key in keys] + ["state", "warnings", "version", "wall_time [s]"] +
             [headed(column, measured, column.rpartition(".")[2]) for column in columns] + ["failure"])
     rows = [head]
     for run in sorted(runs, key=lambda run: [order(run.settings.get(key)) for key in keys]):
         figures = [figure_of(run.summary or {}, column) for column in columns]
-        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, run.version, text(run.wall_seconds)] +
+        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, warning_count(run), run.version, text(run.wall_seconds)] +
                     [text(figure) for figure in figures] + [run.failure or ""])
     return rows
+
+
+def warning_count(run):
+    return "" if run.state == WAITING else len(run.warnings)
 
 
 def thresholds_table(plan, tasks, units):
