@@ -1,5 +1,5 @@
-// What a collision knows of a cell: its moments and relaxation rate, a pure function of 19 values. Number is a plain
-// number or a SIMD pack. Lattice units; populations are deviations f_i - w_i.
+// Moments and relaxation rate of a cell before its collision, a pure function of 19 values. Number is a plain number or
+// a SIMD pack. Lattice units; populations are deviations f_i - w_i.
 //
 //   d = sum f_i,  rho = 1 + d,  m = sum c_i f_i,  u = (m + F/2)/rho,
 //   f_i^eq = w_i {d + rho [3 c_i.u + 9/2 (c_i.u)^2 - 3/2 u.u]},  S_i = w_i [3 (c_i - u).F + 9 (c_i.u)(c_i.F)]
@@ -24,7 +24,7 @@
 
 namespace thalweg::lbm {
 
-// What the relaxation needs to know of a cell, and a wall model may want.
+// Moments of a cell for the relaxation and for wall models.
 template <typename Number>
 struct CellMoments {
   Number deviation;   // d
@@ -35,7 +35,7 @@ struct CellMoments {
   Number bulk;           // K/24; set and used with a bulk relaxation time of its own
 };
 
-// The numbers a collision needs in every cell, ready in packs.
+// Constants of the collision, in packs.
 template <typename Number>
 struct CollisionConstants {
   Number tau0, tau0_squared, subgrid_factor;  // subgrid_factor: Subgrid::closure_factor()

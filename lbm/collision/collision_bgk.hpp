@@ -1,4 +1,4 @@
-// One relaxation time, omega = 1/tau:
+// The bgk collision: one relaxation time, omega = 1/tau.
 //   f_i^c = f_i - omega (f_i - f_i^eq) + (1 - omega/2) S_i                                          (Guo et al. 2002)
 #pragma once
 

@@ -1,6 +1,6 @@
-// The collision operators and their properties, all in one place. The equations: collision_bgk.hpp and so on. A new one
-// is an enumerator, a case of traits_of() and one of each function in collision.hpp and sweep.cpp that the compiler
-// asks for.
+// The collision operators and their properties, all in one place; the equations are in collision_bgk.hpp and so on. A
+// new one is an enumerator, its cases here, for which the compiler asks, and a branch of relax() in collision.hpp
+// (tests/lbm/extension adds one).
 #pragma once
 
 #include "core/keys/named_choice.hpp"
@@ -42,5 +42,19 @@ constexpr CollisionTraits traits_of(CollisionModel model) {
 
 // The words in a case file (core/keys/section_visitor.hpp).
 std::vector<NamedChoice<CollisionModel>> choices_of(CollisionModel);
+
+// Calls visit.operator()<model>() with the model as a constant.
+template <typename Visit>
+decltype(auto) with_constant(CollisionModel model, Visit visit) {
+  switch (model) {
+    case CollisionModel::bgk:
+      return visit.template operator()<CollisionModel::bgk>();
+    case CollisionModel::trt:
+      return visit.template operator()<CollisionModel::trt>();
+    case CollisionModel::trt_at_bodies:
+      return visit.template operator()<CollisionModel::trt_at_bodies>();
+  }
+  __builtin_unreachable();
+}
 
 }  // namespace thalweg::lbm

@@ -26,8 +26,22 @@ namespace thalweg::lbm {
 
 enum class SubgridModel { none, smagorinsky, qr };
 
-// Its words in a case file (core/keys/section_visitor.hpp).
+// The words in a case file (core/keys/section_visitor.hpp).
 std::vector<NamedChoice<SubgridModel>> choices_of(SubgridModel);
+
+// Calls visit.operator()<model>() with the model as a constant.
+template <typename Visit>
+decltype(auto) with_constant(SubgridModel model, Visit visit) {
+  switch (model) {
+    case SubgridModel::none:
+      return visit.template operator()<SubgridModel::none>();
+    case SubgridModel::smagorinsky:
+      return visit.template operator()<SubgridModel::smagorinsky>();
+    case SubgridModel::qr:
+      return visit.template operator()<SubgridModel::qr>();
+  }
+  __builtin_unreachable();
+}
 
 // A model and its constant.
 class Subgrid {
@@ -45,7 +59,14 @@ public:
 
   // nu_t in simple shear at this rate.
   double viscosity_in_shear(double rate) const {
-    return model_ == SubgridModel::smagorinsky ? constant_ * constant_ * rate : 0.0;
+    switch (model_) {
+      case SubgridModel::none:
+      case SubgridModel::qr:
+        return 0.0;
+      case SubgridModel::smagorinsky:
+        return constant_ * constant_ * rate;
+    }
+    __builtin_unreachable();
   }
 
   // The factor of E that comes before what subgrid_invariant() takes from Pi.
@@ -58,7 +79,7 @@ public:
       case SubgridModel::qr:
         return 36.0 * constant_;
     }
-    return 0.0;
+    __builtin_unreachable();
   }
 
   bool operator==(const Subgrid&) const = default;

@@ -18,9 +18,9 @@ int pack_width() {
 
 namespace {
 
-// Where a pack finds its 19 populations and where it leaves them: base pointers per direction, to which the cell index
-// is added. From the swapped arrangement a cell pulls f_i from x - c_i and pushes f_i^c to x + c_i; from the moved one
-// it finds f_i at home and leaves f_i^c in the opposite slot.
+// Slots that a pack reads its 19 populations from and writes them to: base pointers per direction, to which the cell
+// index is added. From the swapped arrangement a cell pulls f_i from x - c_i and pushes f_i^c to x + c_i; from the
+// moved one it finds f_i at home and leaves f_i^c in the opposite slot.
 template <typename Real>
 struct Streams {
   const Real* in[D3Q19::directions];
@@ -40,7 +40,7 @@ struct Streams {
   }
 };
 
-// What the first pass over a segment of a row leaves for the second, pack by pack. Four packs of 19 populations stay in
+// Results of the first pass over a segment of a row for the second, pack by pack. Four packs of 19 populations stay in
 // the first-level cache between the passes with room to spare; eight and more were measured to be slower.
 template <typename Real>
 struct RowSegment {
@@ -73,7 +73,7 @@ struct RowCells {
   const std::uint16_t* in_gaps;
 };
 
-// Which of its variants a row takes.
+// Variant of the sweep that a row takes.
 struct Kind {
   CollisionModel model;
   SubgridModel subgrid;
@@ -138,7 +138,7 @@ template <Kind kind, typename Real>
   });
 }
 
-// On its own, so that what a row computes does not depend on whether its shear rates are wanted.
+// A function of its own, so that the results of a row do not depend on whether its shear rates are stored.
 template <typename Real>
 [[gnu::noinline]] void store_shear(const RowSegment<Real>& s, int p, const RowShear<Real>& shear, int x) {
   const Pack<Real> factor = Real(3) * s.omega[p] * s.inverse_rho[p];
@@ -148,7 +148,7 @@ template <typename Real>
   (factor * sqrt(xz + yz)).copy_to(shear.normal_to[2] + x, stdx::element_aligned);
 }
 
-// Likewise on its own.
+// A function of its own, likewise.
 template <typename Real>
 [[gnu::noinline]] void store_moments(const RowSegment<Real>& s, int p, const RowMoments<Real>& moments, int x) {
   s.deviation[p].copy_to(moments.deviation + x, stdx::element_aligned);
@@ -201,19 +201,6 @@ void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const Col
   });
 }
 
-template <CollisionModel model, typename Real>
-void sweep_row_with(const Streams<Real>& streams, const RowCells& row, const CollisionParameters& parameters,
-                    const RowOutput<Real>& output) {
-  switch (parameters.subgrid.model()) {
-    case SubgridModel::none:
-      return sweep_row_with<model, SubgridModel::none>(streams, row, parameters, output);
-    case SubgridModel::smagorinsky:
-      return sweep_row_with<model, SubgridModel::smagorinsky>(streams, row, parameters, output);
-    case SubgridModel::qr:
-      return sweep_row_with<model, SubgridModel::qr>(streams, row, parameters, output);
-  }
-}
-
 }  // namespace
 
 template <typename Real>
@@ -222,14 +209,10 @@ void sweep_row(Populations<Real>& populations, const CellMap& cells, const Colli
   const Streams<Real> streams(populations);
   const RowCells row{populations.indexing().index(0, y, z), populations.indexing().packs_per_row(),
                      cells.fluid_in_packs(y, z), cells.beside_bodies(y, z), cells.in_gaps(y, z)};
-  switch (parameters.model) {
-    case CollisionModel::bgk:
-      return sweep_row_with<CollisionModel::bgk>(streams, row, parameters, output);
-    case CollisionModel::trt:
-      return sweep_row_with<CollisionModel::trt>(streams, row, parameters, output);
-    case CollisionModel::trt_at_bodies:
-      return sweep_row_with<CollisionModel::trt_at_bodies>(streams, row, parameters, output);
-  }
+  with_constant(parameters.model, [&]<CollisionModel model>() {
+    with_constant(parameters.subgrid.model(),
+                  [&]<SubgridModel subgrid>() { sweep_row_with<model, subgrid>(streams, row, parameters, output); });
+  });
 }
 
 template int pack_width<float>();

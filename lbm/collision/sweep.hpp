@@ -30,7 +30,7 @@ struct RowMoments {
   Real* momentum[3];
 };
 
-// What a sweep leaves of a row beside its populations; null: not wanted.
+// Output of a sweep besides the populations; null: not wanted.
 template <typename Real>
 struct RowOutput {
   const RowShear<Real>* shear = nullptr;

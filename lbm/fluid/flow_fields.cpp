@@ -12,7 +12,7 @@ namespace {
 constexpr int fluid_flag = 3;  // component of a velocity_field after the velocity
 constexpr int layers = 2;      // that a one-sided difference looks at
 
-// With the neighbours of its cells; the whole of an axis where these may lie beyond its end.
+// Region with the neighbours of its cells; the whole axis if they may lie beyond its end.
 Block widened(Block region, const Index3& cells) {
   for (int a = 0; a < 3; ++a) {
     region.lower[a] -= layers;
@@ -77,25 +77,16 @@ double q_criterion(const Gradient& g) {
 
 namespace {
 
-// With the populations that the coming collision sees.
+// Uses the populations that enter the coming collision.
 template <typename Real>
 CellMoments<double> incoming_moments(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   double f[D3Q19::directions];
   for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
   const CollisionConstants<double> constants(fluid.parameters());
   const bool bulk = fluid.parameters().with_bulk();
-  const auto with = [&]<SubgridModel subgrid>() {
+  return with_constant(fluid.parameters().subgrid.model(), [&]<SubgridModel subgrid>() {
     return bulk ? moments_of<subgrid, true>(f, constants) : moments_of<subgrid, false>(f, constants);
-  };
-  switch (fluid.parameters().subgrid.model()) {
-    case SubgridModel::none:
-      return with.template operator()<SubgridModel::none>();
-    case SubgridModel::smagorinsky:
-      return with.template operator()<SubgridModel::smagorinsky>();
-    case SubgridModel::qr:
-      return with.template operator()<SubgridModel::qr>();
-  }
-  return {};
+  });
 }
 
 Symmetric<double> times(double factor, const Symmetric<double>& s) {
