@@ -1,5 +1,6 @@
 #include "bodies/bodies.hpp"
 
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_all_ranks.hpp"
@@ -36,7 +37,7 @@ void Bodies<Real>::add_solids(MPI_Comm communicator) {
   for (int s = 0; s < solids_.count(); ++s) moves.push_back(solids_.moves(s));
   map_.add_solids(moves);
   map_.begin_update();
-  solids_.hand_over([&](const InsideCell& cell) { map_.claim(cell.solid, cell.local); });
+  solids_.hand_over([&](const InsideCell& cell) { map_.claim(slot_of_solid(cell.solid), cell.local); });
   for (const CellChange& change : map_.settle())
     if (fluid_.indexing().owned(change.cell[0], change.cell[1], change.cell[2]))
       ++cells[static_cast<std::size_t>(change.now)];
@@ -93,53 +94,71 @@ void Bodies<Real>::begin_step(bool recording) {
 }
 
 template <typename Real>
-int Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec3& centre) {
-  const int slot = map_.add(id, radius, clump);
-  map_.remap(slot, centre);
+BodySlot Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec3& centre) {
+  const BodySlot slot = map_.add(id, radius, clump);
+  remap(slot, centre);
   resize_to_slots();
-  bodies_[static_cast<std::size_t>(slot)].radius = radius;
+  bodies_[index_of(slot)].radius = radius;
   return slot;
 }
 
 template <typename Real>
-void Bodies<Real>::remove(int slot) {
+void Bodies<Real>::remove(BodySlot slot) {
   map_.remove(slot);
+  settled_ = false;
 }
 
 template <typename Real>
-void Bodies<Real>::move(int slot, const BodyMotion& motion) {
-  LinkBody& body = bodies_[static_cast<std::size_t>(slot)];
+void Bodies<Real>::remap(BodySlot slot, const Vec3& centre) {
+  map_.remap(slot, centre);
+  settled_ = false;
+}
+
+template <typename Real>
+void Bodies<Real>::move(BodySlot slot, const BodyMotion& motion) {
+  CHECK(index_of(slot) < bodies_.size());
+  LinkBody& body = bodies_[index_of(slot)];
   body.centre = motion.centre;
   body.velocity = motion.velocity;
   body.angular_velocity = motion.angular_velocity;
   body.returned = motion.returned;
   body.returned_slope = motion.returned_slope;
-  surrounding_[static_cast<std::size_t>(slot)] = motion.surrounding;
+  surrounding_[index_of(slot)] = motion.surrounding;
 }
 
 template <typename Real>
 void Bodies<Real>::move_solid(int solid, const SolidMotion& motion) {
-  move(solid, {motion.transform.centre, motion.velocity, motion.angular_velocity, motion.returned.density,
-               motion.returned.slope, 0.0});
+  CHECK(solid >= 0 && solid < solids());
+  settled_ = false;
+  move(slot_of_solid(solid), {motion.transform.centre, motion.velocity, motion.angular_velocity,
+                              motion.returned.density, motion.returned.slope, 0.0});
   const std::vector<InsideCell> before = solids_.inside(solid);
   solids_.move_to(solid, motion.transform);
   const std::vector<InsideCell>& now = solids_.inside(solid);
   std::vector<InsideCell> turned;
   std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned));
-  for (const InsideCell& cell : turned) map_.claim(solid, cell.local);
+  for (const InsideCell& cell : turned) map_.claim(slot_of_solid(solid), cell.local);
   turned.clear();
   std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(turned));
-  for (const InsideCell& cell : turned) map_.give_up(solid, cell.local);
+  for (const InsideCell& cell : turned) map_.give_up(slot_of_solid(solid), cell.local);
+}
+
+template <typename Real>
+void Bodies<Real>::settle_cells() {
+  map_.settle();
+  settled_ = true;
+  linked_ = map_.changes().empty() && linked_;
 }
 
 template <typename Real>
 void Bodies<Real>::settle() {
-  map_.settle();
+  settle_cells();
   account_for_covered_cells();
 }
 
 template <typename Real>
 void Bodies<Real>::refill() {
+  CHECK(settled_);
   const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
   totals_.refilled_mass = totals.mass;
   totals_.refilled = totals.momentum;
@@ -149,12 +168,15 @@ void Bodies<Real>::refill() {
 // Links follow from the map of the cells alone.
 template <typename Real>
 void Bodies<Real>::update_links() {
+  CHECK(settled_);
   link_builder_.update(map_, links_);
   occluded_links_.update(map_);
+  linked_ = true;
 }
 
 template <typename Real>
 void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
+  CHECK(settled_ && linked_);
   std::vector<FixedTensor>* moments = options_.moments ? &moments_ : nullptr;
   InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
   const auto sweep = timer.measure(sweep_phase);
@@ -170,7 +192,7 @@ void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
 
 template <typename Real>
 void Bodies<Real>::settle_at_start() {
-  map_.settle();
+  settle_cells();
   update_links();
 }
 
@@ -178,12 +200,13 @@ template <typename Real>
 void Bodies<Real>::remove_all() {
   map_.begin_update();
   for (std::size_t slot = static_cast<std::size_t>(solids()); slot < map_.bodies().size(); ++slot)
-    if (!map_.bodies()[slot].is_free()) map_.remove(static_cast<int>(slot));
+    if (!map_.bodies()[slot].is_free()) map_.remove(slot_at(slot));
   settle_at_start();
 }
 
 template <typename Real>
 void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) const {
+  CHECK(settled_ && linked_);
   std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
   InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
@@ -191,6 +214,7 @@ void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) cons
 
 template <typename Real>
 const std::vector<FixedVec3>& Bodies<Real>::momentum_by_height() {
+  CHECK(!by_height_.empty());  // begin_step(true)
   apply_links_on_copies(&by_height_);
   return by_height_;
 }
@@ -218,8 +242,9 @@ void Bodies<Real>::account_for_covered_cells() {
   }
 }
 
-// Of a cell that this body covers: sum (c_i - u_w) f_i^c without the half force, which refill puts into cells again.
-// What is left, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered cells").
+// Gives the body the momentum of a cell that it covers, sum (c_i - u_w) f_i^c without the half force, which refill puts
+// into cells again. The rest, rho u_w, belongs to the mass, which comes back (docs/theory.md, section 3, "Covered
+// cells").
 template <typename Real>
 void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position, double density,
                                  const Vec3& momentum) {
@@ -234,7 +259,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
   totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }
 
-// To be called before forces are added that the fluid does not feel.
+// Call it before adding forces that the fluid does not feel.
 template <typename Real>
 void Bodies<Real>::add_link_totals() {
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {

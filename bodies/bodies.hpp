@@ -1,6 +1,6 @@
-// Rigid bodies in a lattice fluid: the cells they cover, the links to the fluid around them, what they hide from each
-// other, and the sums of force, torque and mass of every step. Bodies have slots: first the solids, which stand still
-// or move, then spheres. Lattice units.
+// Rigid bodies in a lattice fluid: the cells they cover, the links to the fluid around them, the patches they occlude
+// from each other, and the sums of force, torque and mass of every step. Bodies have slots: first the solids, which
+// stand still or move, then spheres. Lattice units.
 //
 // A step, in this order:
 //   begin_step()             forgets the last one
@@ -35,10 +35,10 @@ namespace thalweg::bodies {
 // This rank's part of the sums that a balance of the fluid needs, of one step.
 struct ExchangeTotals {
   Vec3 link_momentum = Vec3::Zero();  // force on the bodies through this rank's links
-  Vec3 kept = Vec3::Zero();           // of `covered`: what the bodies got
+  Vec3 kept = Vec3::Zero();           // part of `covered` that the bodies got
   Vec3 refilled = Vec3::Zero();       // given to uncovered cells
   Vec3 covered = Vec3::Zero();        // lost in cells that became solid
-  // The same about the origin. Angular momentum has a meaning only in a box without periodic faces.
+  // Angular momenta about the origin, meaningful only in a box without periodic faces.
   Vec3 link_angular_momentum = Vec3::Zero();
   Vec3 kept_angular_momentum = Vec3::Zero();
   Vec3 refilled_angular_momentum = Vec3::Zero();
@@ -47,18 +47,18 @@ struct ExchangeTotals {
   std::int64_t link_mass = 0, refilled_mass = 0, covered_mass = 0;
 };
 
-// What a body does in the coming step; the fields of LinkBody.
+// Motion of a body in the coming step; the fields of LinkBody.
 struct BodyMotion {
   Vec3 centre, velocity, angular_velocity;
-  double returned;  // of mass, by its links (mass_return.hpp)
+  double returned;  // mass density returned by its links (mass_return.hpp)
   Vec3 returned_slope;
   double surrounding;  // rho - rho_rest of the fluid around it
 };
 
-// The same of a solid.
+// Motion of a solid in the coming step.
 struct SolidMotion {
   RigidTransform transform;
-  Vec3 velocity, angular_velocity;  // of and about the centre of its place
+  Vec3 velocity, angular_velocity;  // of and about its centre
   MassReturn returned;
 };
 
@@ -71,8 +71,8 @@ public:
   Bodies(const Decomposition& decomposition, MPI_Comm communicator, lbm::Fluid<Real>& fluid, const BodyOptions& options,
          const Hydrostatic& rest, std::vector<Solid> solids = {});
 
-  // What links can tell apart, to be looked at before a run, and when bodies were added: throw on every rank InputError
-  // where the block of one has too many cells; Error where one has too many bodies. Collective.
+  // Limits of the link format. check_block() is called before a run and throws InputError on every rank if a block has
+  // too many cells; check_count() is called when bodies were added and throws Error if a rank has too many. Collective.
   void check_block(MPI_Comm communicator) const;
   template <typename Error>
   void check_count(MPI_Comm communicator) const;
@@ -80,12 +80,12 @@ public:
   int solids() const { return map_.solids(); }  // in the slots below this
 
   const std::vector<MappedBody>& mapped() const { return map_.bodies(); }  // by slot; a free one has the id -1
-  int slot_of(GlobalId id) const { return map_.slot_of(id); }              // -1: not on this rank
-  const LinkBody& body(int slot) const { return bodies_[static_cast<std::size_t>(slot)]; }
-  const LinkSums& link_sums(int slot) const { return links_.sums_of(slot); }
+  BodySlot slot_of(GlobalId id) const { return map_.slot_of(id); }         // none: not on this rank
+  const LinkBody& body(BodySlot slot) const { return bodies_[index_of(slot)]; }
+  const LinkSums& link_sums(BodySlot slot) const { return links_.sums_of(static_cast<int>(slot)); }
   // sum F_a x_b of the step; where BodyOptions::moments asks for it.
-  const FixedTensor& moments(int slot) const { return moments_[static_cast<std::size_t>(slot)]; }
-  // What solids hide of every body, by slot (OccludedPatches::by_solids()), which is not in moments().
+  const FixedTensor& moments(BodySlot slot) const { return moments_[index_of(slot)]; }
+  // Patches of every body that solids occlude, by slot (OccludedPatches::by_solids()); moments() does not contain them.
   std::vector<std::array<std::int64_t, 3>> occluded_by_solids() const {
     return map_.occluded_patches().by_solids(bodies_.size(), solids());
   }
@@ -98,10 +98,10 @@ public:
 
   // recording: also sums by height what the fluid gives to bodies (momentum_by_height()).
   void begin_step(bool recording = false);
-  int add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
-  void remove(int slot);                                                    // of a sphere
-  void move(int slot, const BodyMotion& motion);
-  void remap(int slot, const Vec3& centre) { map_.remap(slot, centre); }
+  BodySlot add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
+  void remove(BodySlot slot);                                                    // of a sphere
+  void move(BodySlot slot, const BodyMotion& motion);
+  void remap(BodySlot slot, const Vec3& centre);
   void move_solid(int solid, const SolidMotion& motion);
   void settle();
   void refill();
@@ -123,6 +123,7 @@ public:
 private:
   void add_solids(MPI_Comm communicator);
   void resize_to_slots();
+  void settle_cells();
   void account_for_covered_cells();
   void keep_momentum(LinkBody& body, int plane, const Vec3& position, double density, const Vec3& momentum);
   void add_link_totals();
@@ -137,10 +138,11 @@ private:
   LinkBuilder link_builder_;
   OccludedLinks occluded_links_;
   Refill refill_;
-  std::vector<LinkBody> bodies_;      // by slot
-  std::vector<double> surrounding_;   // by slot
-  std::vector<FixedTensor> moments_;  // by slot; empty unless measured
-  std::vector<FixedVec3> by_height_;  // empty unless recording
+  std::vector<LinkBody> bodies_;         // by slot
+  std::vector<double> surrounding_;      // by slot
+  std::vector<FixedTensor> moments_;     // by slot; empty unless measured
+  std::vector<FixedVec3> by_height_;     // empty unless recording
+  bool settled_ = true, linked_ = true;  // cells and links are those of the present positions
   ExchangeTotals totals_;
 };
 

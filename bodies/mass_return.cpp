@@ -19,7 +19,7 @@ MassReturn unit_mass_return(const LinkSums& links) {
   if (weight == 0.0) return {};
   const Vec3 normal = links.normal();
   const Mat3 second = links.second();
-  // With a few links in a plane, or none in some direction, there is no such x: then evenly.
+  // A few links in one plane have no such x: the mass then comes back evenly.
   constexpr double least_determinant = 1e-3 / 27.0, least_share = 0.1;
   if (second.determinant() <= least_determinant * weight * weight * weight) return {1.0 / weight, Vec3::Zero()};
   const Vec3 x = second.inverse() * normal;
@@ -28,8 +28,8 @@ MassReturn unit_mass_return(const LinkSums& links) {
   return {1.0 / share, -x / share};
 }
 
-// What comes back changes what the links take, with cli most of all: returned at once and whole it swings and grows. A
-// cell at a surface can swing by itself from step to step, hardly damped; the mean of two steps does not push it.
+// The return changes what the links take, most of all with cli: returning everything at once would oscillate and grow.
+// Cells at a surface oscillate from step to step with little damping; the mean of two steps does not excite them.
 MassReturn MassDebt::settle(double given, double came_back, const LinkSums& links) {
   constexpr double share_of_owed = 0.5, share_of_last_step = 0.125;
   owed -= given;

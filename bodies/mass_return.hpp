@@ -1,4 +1,4 @@
-// Giving the fluid back the mass that it lost at a body.
+// Return of the mass that the fluid lost at a body.
 //
 // Interpolated bounce-back conserves no mass: it lets some through where the pressure changes along a link, and where
 // two grains come together the surface that pushes fluid away is smaller than the one that draws it in, because no cell
@@ -7,8 +7,8 @@
 // back along link i. a and b give the mass r and no momentum:
 //   sum w_i (a + b.c_i) = r,   sum w_i c_i (a + b.c_i) = 0.
 // With S = sum w_i, A = sum w_i c_i, M = sum w_i c_i c_i over the links: b = -a x, M x = A, a = r/(S - A.x). Around a
-// grain alone A = 0 and the mass comes back evenly; one that others hide in part gets it back at the edge of what is
-// hidden, where the fluid would be squeezed out. Lattice units.
+// grain alone A = 0 and the mass comes back evenly; a grain that others occlude in part gets it back at the edge of the
+// occluded patch, where the fluid would be squeezed out. Lattice units.
 #pragma once
 
 #include "bodies/map/link_table.hpp"
@@ -22,15 +22,15 @@ struct MassReturn {
 
   double mass(const LinkSums& links) const { return density * links.weight() + slope.dot(links.normal()); }
 
-  // For `times` the mass, limited to a density of 1 %, so that where a body has hardly any links the rest has to wait.
+  // Return of `times` the mass, limited to a density of 1 %: a body with few links returns the rest later.
   MassReturn scaled(double times) const;
 };
 
-// For a unit of mass; links: of the body, over all ranks. Zero for a body without links.
+// Return of a unit of mass; links: of the body, over all ranks. Zero for a body without links.
 MassReturn unit_mass_return(const LinkSums& links);
 
-// What one body owes the fluid, settled step by step. Besides half of what is owed its links return what they are
-// likely to lose in the next step: a mean over the last ones, in which the latest counts an eighth.
+// Mass that one body owes the fluid, settled step by step. Its links return half of it, plus the expected loss of the
+// next step: a mean over the last steps in which the latest counts an eighth.
 struct MassDebt {
   double owed = 0.0;
   double mean_loss = 0.0;  // a step

@@ -1,6 +1,7 @@
 #include "bodies/refill.hpp"
 
 #include "bodies/map/lattice_vectors.hpp"
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "lbm/lattice/equilibrium.hpp"
 
@@ -158,6 +159,7 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
   const Vec3& force = fluid.carried_force();
   for (const Uncovered& cell : uncovered) {
     if (!block_.contains(cell.global)) continue;
+    CHECK(cell.before >= 0 && static_cast<std::size_t>(cell.before) < bodies.size());
     LinkBody& body = bodies[cell.before];
     const Vec3 position = centre_of(cell.global);
     const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));

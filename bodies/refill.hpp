@@ -5,7 +5,8 @@
 // These are post-collision populations, whose momentum is rho u + F/2. Lattice units.
 //
 // Neighbours may be on other ranks. Every rank that owns neighbours of an uncovered cell sees that cell in its ghost
-// layer too, so both sides know without asking who sends what; sums are exact, so the result is the same on any ranks.
+// layer too, so both sides know without asking who sends what; sums are exact, so the result does not depend on the
+// ranks.
 #pragma once
 
 #include "bodies/map/body_map.hpp"
@@ -40,7 +41,7 @@ public:
                     std::vector<LinkBody>& bodies);
 
 private:
-  // What the fluid neighbours of one uncovered cell tell; a message between ranks as it stands.
+  // Sums over the fluid neighbours of one uncovered cell; sent between ranks as it is.
   struct Neighbours {
     std::int64_t count = 0, excess = 0;  // LatticeFixed sum of rho - rho_rest
 

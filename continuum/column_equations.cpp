@@ -1,5 +1,7 @@
 #include "continuum/column_equations.hpp"
 
+#include "core/base/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,6 +52,8 @@ ColumnEquations::ColumnEquations(const ColumnParameters& parameters) : parameter
 }
 
 std::vector<double> ColumnEquations::unknowns_of(const ColumnState& state) const {
+  CHECK(state.fraction.size() == state_.fraction.size());
+  CHECK(state.grain_velocity.size() == state.fraction.size() && state.fluid_velocity.size() == state.fraction.size());
   std::vector<double> unknowns;
   double below = 0.0;
   for (std::size_t i = 0; i < state.fraction.size(); ++i) {
@@ -60,6 +64,7 @@ std::vector<double> ColumnEquations::unknowns_of(const ColumnState& state) const
 }
 
 const ColumnState& ColumnEquations::state_of(std::span<const double> unknowns) const {
+  CHECK(unknowns.size() == static_cast<std::size_t>(size()));
   double below = 0.0;
   for (std::size_t i = 0; i < state_.fraction.size(); ++i) {
     const double* cell = unknowns.data() + unknowns_per_cell * i;
@@ -84,7 +89,7 @@ const std::vector<double>& ColumnEquations::pressures_of(std::span<const double>
   return pressure_;
 }
 
-// At the shear rate in the middle of the cell, the mean of those on its faces.
+// Uses the shear rate in the middle of the cell, the mean of those on its faces.
 void ColumnEquations::find_pressures() const {
   const Rheology& rheology = parameters_.closures.rheology;
   const double dz = parameters_.spacing;
@@ -174,6 +179,7 @@ ColumnEquations::CellDrag ColumnEquations::drag_in(std::size_t cell) const {
 }
 
 void ColumnEquations::rates(std::span<const double> unknowns, std::span<double> rates) const {
+  CHECK(rates.size() == unknowns.size());
   fluxes_of(unknowns);
   const double dz = parameters_.spacing, rho_s = parameters_.mixture.grain_density,
                rho_f = parameters_.mixture.fluid_density;

@@ -22,14 +22,14 @@
 
 namespace thalweg::continuum {
 
-// At cell middles.
+// State at the middles of cells.
 struct ColumnState {
   std::vector<double> fraction;        // phi
   std::vector<double> grain_velocity;  // U_s, m/s
   std::vector<double> fluid_velocity;  // U_f, m/s
 };
 
-// At faces, from the floor to the top: cells + 1 values.
+// Fluxes at the faces, from the floor to the top: cells + 1 values.
 struct ColumnFluxes {
   std::vector<double> grain_flux;      // J, m/s
   std::vector<double> grain_stress;    // tau_s, Pa

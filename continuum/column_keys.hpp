@@ -1,5 +1,4 @@
-// How a case describes a column of the continuum (system: continuum): its sections fluid, grains, column, closures and
-// creep.
+// Keys of a two-phase column in a case (system: continuum): the sections fluid, grains, column, closures and creep.
 #pragma once
 
 #include "continuum/continuum_system.hpp"
@@ -46,9 +45,9 @@ struct ContinuumKeys {
   bool operator==(const ContinuumKeys&) const = default;
 };
 
-// What keys that pass check() mean under a gravity (m/s^2: along the bed, downwards into it). A whole number of cells
-// fills the water, so that they are about as high as wanted. tau* = rho_f g_x h/((rho_s - rho_f) g d), g the magnitude
-// of gravity.
+// Parameters that follow from keys that pass check() and gravity (m/s^2: along the bed, downwards into it). The height
+// of a cell is rounded so that a whole number of cells fills the water. tau* = rho_f g_x h/((rho_s - rho_f) g d), g the
+// magnitude of gravity.
 SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, double gravity_z);
 
 // Throws KeyError where the keys do not fit together.

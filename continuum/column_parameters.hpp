@@ -1,4 +1,4 @@
-// What a column of the two-phase continuum is made of.
+// Parameters of a two-phase column.
 #pragma once
 
 #include "continuum/drag.hpp"
@@ -8,7 +8,7 @@
 
 namespace thalweg::continuum {
 
-// Which way the drift velocity acts: as printed, f_d has U_s - U_f + u_d, which carries grains up their own gradient.
+// Sign of the drift velocity. As printed, f_d has U_s - U_f + u_d, which carries grains up their own gradient.
 enum class DriftSign { diffusive, printed };
 std::vector<NamedChoice<DriftSign>> choices_of(DriftSign);
 

@@ -15,9 +15,9 @@ namespace thalweg::continuum {
 
 namespace {
 
-// Of the integrator: the relative error of velocities, and the absolute ones of the solid fraction (1) and of
-// velocities (m/s). Grains of a bed at rest creep more slowly than creeping_rate times a cell, which their error must
-// stay below.
+// Tolerances of the integrator: the relative error of velocities, and the absolute errors of the solid fraction (1) and
+// of velocities (m/s). Grains of a bed at rest creep more slowly than creeping_rate times a cell, and their error must
+// stay below that.
 constexpr double relative_error = 1e-4, fraction_error = 1e-6, grain_error = 1e-7, fluid_error = 1e-5;
 
 constexpr double least_transport = 1e-4;  // q*, to which changes are compared where there is less
@@ -32,7 +32,8 @@ std::vector<Tolerance> tolerances_of(const ColumnParameters& column) {
   return tolerances;
 }
 
-// Of clear water under its own weight over a floor: eta U' + rho_f l^2 U'^2 = rho_f g_x (depth - z), l = l_m(0).
+// Velocity of clear water under its own weight over a floor: eta U' + rho_f l^2 U'^2 = rho_f g_x (depth - z), l =
+// l_m(0).
 std::vector<double> clear_flow(const ColumnParameters& column, double depth, int cells) {
   const Mixture& mixture = column.mixture;
   const double length =
@@ -84,7 +85,8 @@ std::vector<double> at_middles(const std::vector<double>& faces) {
   return middles;
 }
 
-// Of as many cells: how high they are follows from the depth of the water, which may follow from gravity.
+// Throws InputError unless the cells are equally high. Their number agrees, but their height follows from the depth of
+// the water, and so perhaps from gravity.
 void require_same_spacing(const ArchiveReader& archive, const SystemParameters& parameters) {
   const double saved = archive.real_attribute("column/spacing"), here = parameters.column.spacing;
   if (same_but_for_rounding(saved, here)) return;

@@ -38,7 +38,7 @@ Reaction reaction_of(const Rheology& rheology, const Mixture& mixture, double ra
   return reaction;
 }
 
-// One correction of g by Newton's method, at the points between the ends; its largest value.
+// Corrects g between the ends by one Newton step; returns the largest correction.
 double correct(std::vector<double>& g, const Reaction& reaction, double diffusion) {
   const int inner = static_cast<int>(g.size()) - 2;
   std::vector<Eigen::Triplet<double>> entries;

@@ -13,7 +13,7 @@
 
 namespace thalweg::continuum {
 
-// Of the grains at equal intervals, from the lower end up.
+// Stress of the grains at equal intervals, from the lower end up.
 struct BedStress {
   double spacing = 0.0;                                                                    // m
   std::vector<double> pressure;                                                            // p, Pa, above zero
@@ -39,8 +39,8 @@ Creep creep_of(const Rheology& rheology, const Mixture& mixture, double nonlocal
 // from `first` to the last one.
 double decay_length(const Creep& creep, double spacing, std::size_t first);
 
-// Of a bed at rest under a flow: p = phi_m (rho_s - rho_f) g_z depth, tau = tau_b + (phi_m rho_s + (1 - phi_m) rho_f)
-// g_x depth, at `points` depths from `lower` up to `upper` (m). gravity: m/s^2; bed_stress: tau_b, Pa.
+// Stress in a bed at rest under a flow: p = phi_m (rho_s - rho_f) g_z depth, tau = tau_b + (phi_m rho_s + (1 - phi_m)
+// rho_f) g_x depth, at `points` depths from `lower` up to `upper` (m). gravity: m/s^2; bed_stress: tau_b, Pa.
 BedStress resting_bed(const Rheology& rheology, const Mixture& mixture, double gravity_x, double gravity_z,
                       double bed_stress, double lower, double upper, int points);
 

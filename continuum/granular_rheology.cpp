@@ -24,10 +24,6 @@ double friction(const Rheology& rheology, double fraction, double mixed, double 
          2.5 * fraction * viscous * (1.0 / (rheology.dilation * mixed) + 1.0);
 }
 
-double flowing_fraction(const Rheology& rheology, double mixed) {
-  return rheology.densest_fraction / (1.0 + rheology.dilation * mixed);
-}
-
 double flow_pressure(const Rheology& rheology, const Mixture& mixture, double fraction, double shear_rate) {
   const double gap = std::max(rheology.densest_fraction - fraction, rheology.smallest_gap);
   const double shear = shear_rate * mixture.diameter;

@@ -31,13 +31,12 @@ double viscous_number(const Mixture& mixture, double shear_rate, double pressure
 double inertial_number(const Mixture& mixture, double shear_rate, double pressure);        // I
 double mixed_number(double viscous_number, double inertial_number);                        // I_m
 double friction(const Rheology& rheology, double fraction, double mixed, double viscous);  // mu, of grains that flow
-double flowing_fraction(const Rheology& rheology, double mixed);                           // phi of eq. 21
 
 double flow_pressure(const Rheology& rheology, const Mixture& mixture, double fraction, double shear_rate);  // Pa
 double elastic_pressure(const Rheology& rheology, double fraction);                                          // Pa
 
-// Pa: mu p in the direction of the shear rate (1/s, either sign); mu_1 p g/sqrt(g^2 + creeping_rate^2) where it is
-// small.
+// Shear stress (Pa): mu p in the direction of the shear rate (1/s, either sign); where that is small, mu_1 p g/sqrt(g^2
+// + creeping_rate^2).
 double granular_stress(const Rheology& rheology, const Mixture& mixture, double fraction, double pressure,
                        double shear_rate);
 

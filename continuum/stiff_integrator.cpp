@@ -1,5 +1,6 @@
 #include "continuum/stiff_integrator.hpp"
 
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 
 #include <cvode/cvode.h>
@@ -20,12 +21,12 @@ namespace thalweg::continuum {
 namespace {
 
 constexpr long most_steps = 200000;  // of one interval
-// What is left of the error of Newton's method, over that of a step. With CVODE's own 0.1, what is left in stiff
-// unknowns passes for an error of the step, which then gets ever shorter.
+// Residual of Newton's method relative to the error of a step. With CVODE's default of 0.1, the residual in stiff
+// unknowns counts as an error of the step, which then gets ever shorter.
 constexpr double newton_share = 0.01;
 constexpr int highest_order = 2;  // A-stable; beyond it, fast oscillations of drag and friction would grow
 
-// What CVODE makes in C, with its end.
+// A C object of CVODE with its deleter.
 template <typename Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, void (*)(Handle)>;
 
@@ -122,6 +123,8 @@ StiffIntegrator::StiffIntegrator(int half_bandwidth, std::vector<Tolerance> tole
 StiffIntegrator::~StiffIntegrator() = default;
 
 void StiffIntegrator::advance(std::span<double> unknowns, double duration) {
+  CHECK(unknowns.size() == static_cast<std::size_t>(memory_->size));
+  CHECK(duration > 0.0);
   double* own = N_VGetArrayPointer(memory_->unknowns.get());
   std::copy(unknowns.begin(), unknowns.end(), own);
   void* cvode = memory_->cvode.get();

@@ -13,7 +13,7 @@
 
 namespace thalweg::continuum {
 
-// Of one unknown y: an error of relative |y| + absolute counts as one.
+// Tolerance of one unknown y: an error of relative |y| + absolute has the weight 1.
 struct Tolerance {
   double relative = 0.0;
   double absolute = 0.0;  // in its unit

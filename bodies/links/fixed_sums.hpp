@@ -28,7 +28,7 @@ public:
     }
     terms_ += width;
   }
-  // Of at most most_terms; a term out of range sets the flag of core/sums/sum_range.hpp.
+  // Sum of at most most_terms terms; one out of range sets the flag of core/sums/sum_range.hpp.
   std::int64_t operator[](int sum) const {
     std::uint64_t total = 0, differences = 0;
     for (int lane = 0; lane < width; ++lane) {

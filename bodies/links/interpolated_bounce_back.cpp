@@ -2,6 +2,7 @@
 
 #include "bodies/links/fixed_sums.hpp"
 #include "bodies/links/link_rules.hpp"
+#include "core/base/check.hpp"
 #include "lbm/lattice/equilibrium.hpp"
 
 #include <algorithm>
@@ -27,6 +28,9 @@ InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, co
       block_(box, fluid.block().lower),
       next_(fluid.populations(), fluid.tiles()),
       has_rest_(!options.rest_gradient.isZero(0.0)) {
+  CHECK(links.tiles().size() == static_cast<std::size_t>(tiles_.count()));
+  CHECK(!moments || moments->size() == bodies.size());
+  CHECK(!by_height || by_height->size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
   lbm::Populations<Real>& populations = fluid.populations();
   for (std::vector<Real>& deviations : deviations_)
     deviations.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
@@ -37,6 +41,8 @@ InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, co
 
 template <typename Real>
 void InterpolatedBounceBack<Real>::apply_tile(int tile) {
+  CHECK(tile == last_tile_ + 1 && tile < tiles_.count());
+  last_tile_ = tile;
   const auto apply = [&]<typename Rule>() {
     moments_ ? apply_links<Rule, true>(tile) : apply_links<Rule, false>(tile);
   };
@@ -49,8 +55,8 @@ void InterpolatedBounceBack<Real>::apply_tile(int tile) {
 template <typename Real>
 template <typename Rule, bool with_moments>
 void InterpolatedBounceBack<Real>::apply_links(int tile) {
-  // One plane ahead, because links reach for slots in the next plane: the straight pass for the densities brings them
-  // into the cache at the speed of memory.
+  // Densities are measured one plane ahead: links also read slots of the next plane, and this sequential pass brings
+  // them into the cache at the speed of memory.
   const int z = tiles_.plane_of(tile);
   if (z == 0) measure_densities(tile);
   if (z + 1 < tiles_.planes()) measure_densities(tile + 1);
@@ -208,8 +214,8 @@ void InterpolatedBounceBack<Real>::gather(const Batch& b) {
   if (b.leaks) find_leaks(b);
 }
 
-// Where covered links have half-way bounce-back: the slot of x_ff is a solid cell's, which may hold anything, and no
-// weight, not even 0, takes an infinity or NaN out again.
+// Narrow links have half-way bounce-back here. Their slot of x_ff belongs to a solid cell and may hold an infinity or
+// NaN, which a weight of 0 would not remove.
 template <typename Real>
 void InterpolatedBounceBack<Real>::clear_second_of_narrow(const Batch& b) {
   for (int p = 0; p < b.pieces; ++p)
@@ -252,7 +258,7 @@ void InterpolatedBounceBack<Real>::gather_narrow(const Batch& b) {
   for (int c = 0; c < b.narrow_count; ++c) values_.second[b.narrow[c]] = static_cast<Real>(upstream_.population(c));
 }
 
-// For a rule that needs both. Covered links have none (clear_second_of_narrow()).
+// Second value of a rule that needs both populations; narrow links have none (clear_second_of_narrow()).
 template <typename Real>
 void InterpolatedBounceBack<Real>::gather_upstream(const Batch& b) {
   for (int p = 0; p < b.pieces; ++p)

@@ -64,7 +64,7 @@ public:
 private:
   static constexpr int capacity = UpstreamBodies::capacity;
   // Links of one body in a batch: [first, first + count), and copies of the last up to padded(count). The first
-  // `covered` of all these have a body at x_ff.
+  // `narrow` of them have a body at x_ff.
   struct Piece {
     std::int32_t body;
     int first, count, narrow;
@@ -78,9 +78,9 @@ private:
     int pieces = 0;
     Piece piece[capacity / links_at_a_time];
     std::int32_t body[capacity / links_at_a_time];  // of every links_at_a_time links
-    bool leaks = false;                             // whether there is an enclosed cell
+    bool leaks = false;                             // true if a link starts in an enclosed cell
     int narrow_count = 0;
-    std::int32_t narrow[capacity];  // the links whose x_ff a body covers, if they want to know of it
+    std::int32_t narrow[capacity];  // links whose second value comes from the body at x_ff
     alignas(64) std::uint32_t xy[capacity], tag[capacity];
     alignas(64) std::int32_t cell[capacity];  // index of x_f within its plane
     alignas(64) std::int32_t incident_at[capacity], second_at[capacity], reflected_at[capacity];  // LinkSlots
@@ -91,14 +91,15 @@ private:
       size = pieces = 0;
     }
   };
-  // What a batch reads and what comes of it.
+  // Input and results of a batch.
   struct Values {
     alignas(64) Real deviation[capacity];                   // rho - 1 at x_f
     alignas(64) Real excess[capacity];                      // rho - rho_rest at x_f, where it is not the same
     alignas(64) Real incident[capacity], second[capacity];  // f_i^c(x_f); the rule's other value
     alignas(64) Real leak[capacity];       // rho - rho_rest - reference density where x_f is enclosed, else 0
     alignas(64) Real reflected[capacity];  // f_i'(x_f, t+1)
-    // What is summed, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho - rho_rest)(x_f).
+    // Terms of the sums, zero for copies. taken, given: f_i^c(x_f), f_i'(x_f, t+1); pressure: w_i (rho -
+    // rho_rest)(x_f).
     alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
     alignas(64) Real moment[9][capacity];
@@ -177,6 +178,7 @@ private:
 
   std::vector<Real> deviations_[2];  // rho - 1 of the cells of two neighbouring planes, even z and odd z
   int parity_ = 0;                   // of the present plane
+  int last_tile_ = -1;               // the tile applied last
 
   TilePrefetch<Real> next_;
   Batch batches_[2];

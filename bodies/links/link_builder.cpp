@@ -120,7 +120,7 @@ void LinkBuilder::find_in_row(int slot, int y, int z) {
   }
 }
 
-// Of `count` cells from x on, at most one vector.
+// Finds the links of `count` cells from x on, at most one vector.
 void LinkBuilder::find_in_cells(int slot, int x, int count, int y, int z) {
   constexpr auto unaligned = std::experimental::element_aligned;
   static_assert(Cells::size() <= CellMap::read_beyond);

@@ -1,6 +1,6 @@
-// Where links cross the surface of a sphere. With d = x_f - centre and delta in [0, 1]
-// the fraction of the link at which it enters: arm = d + delta c_i (cells). Cells may have been assigned when the body
-// was up to a small tolerance away; a crossing just beyond an end of its link is then put at that end.
+// Crossings of links with the surface of a sphere. With d = x_f - centre and delta in [0, 1] the fraction of the link
+// at which it enters: arm = d + delta c_i (cells). Cells may have been assigned when the body was up to a small
+// tolerance away; a crossing just beyond an end of its link is then put at that end.
 #pragma once
 
 #include "bodies/map/link_table.hpp"
@@ -26,7 +26,7 @@ struct BlockFrame {
     }
   }
 
-  // Whether a solid cell of a body at `centre` can lie beyond a periodic face.
+  // True if a solid cell of a body at `centre` can lie beyond a periodic face.
   bool may_wrap(const Vec3& centre, double reach) const {
     constexpr double margin = 1.0;  // cells are assigned where the body was up to a small tolerance ago
     bool wraps = false;
@@ -38,7 +38,7 @@ struct BlockFrame {
 
 namespace detail {
 
-// As find_crossings(). `wraps`: whether a link may be nearer to another image of the centre.
+// Body of find_crossings(). `wraps`: a link may be nearer to another image of the centre.
 template <bool wraps, typename Real>
 [[gnu::always_inline]] inline void cross_links(Sphere sphere, const Vec3& centre, const BlockFrame& block, int z,
                                                const std::uint32_t* __restrict xy, const std::uint32_t* __restrict tags,
@@ -76,7 +76,7 @@ template <bool wraps, typename Real>
       arm_y[k] = dy;
       arm_z[k] = dz;
     }
-    // On its own: in one loop the compiler would make three cases of everything that depends on the distance.
+    // A separate loop: in one loop the compiler would triple everything that depends on the distance.
     for (int k = first; k < end; ++k) {
       const int tag = static_cast<int>(tags[k]);
       const Real inside = distance[k] < Real(1) ? distance[k] : Real(1);
@@ -90,10 +90,10 @@ template <bool wraps, typename Real>
 
 }  // namespace detail
 
-// Of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a multiple of
-// links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the arrays.
-// Coordinates are relative to a whole number near the centre, so that no digits are lost far from the origin; the
-// nearest image is that of the solid cell, which is inside.
+// Finds the crossings of links [0, count) of one body (centre: global) in the plane z (owned local coordinate), count a
+// multiple of links_at_a_time, in the arithmetic of Real, which is the same for every link whatever its place in the
+// arrays. Coordinates are relative to a whole number near the centre, so that no digits are lost far from the origin;
+// the nearest image is that of the solid cell, which is inside.
 template <typename Real>
 inline void find_crossings(const Sphere& sphere, const Vec3& centre, const BlockFrame& block, int z,
                            const std::uint32_t* xy, const std::uint32_t* tags, int count, Real* distance, Real* arm_x,

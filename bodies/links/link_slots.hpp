@@ -1,4 +1,4 @@
-// Where the populations of a link are in memory: offsets in 32 bits from one base, computed for a batch of links at a
+// Memory locations of the populations of a link: offsets in 32 bits from one base, computed for a batch of links at a
 // time. A table of pointers by direction would cost two more loads for each value.
 //
 // With A the slot in the plane of direction i of the cell x_f in the moved arrangement (of i' in the swapped one), B
@@ -44,9 +44,9 @@ public:
                                    stride_of(populations), most));
   }
 
-  // Of links [0, count) in the plane z (owned local coordinate), count a multiple of links_at_a_time: the index of x_f
-  // within its plane of cells; the slots of f_i^c(x_f), of f_i^c(x_ff) where delta < 1/2 or else f_i'^c(x_f), and of
-  // the incoming f_i'.
+  // Finds, for links [0, count) in the plane z (owned local coordinate), count a multiple of links_at_a_time: the index
+  // of x_f within its plane of cells; the slots of f_i^c(x_f), of f_i^c(x_ff) where delta < 1/2 or else f_i'^c(x_f),
+  // and of the incoming f_i'.
   template <typename Real>
   void find(int z, const std::uint32_t* __restrict xy, const std::uint32_t* __restrict tags, int count,
             const Real* __restrict distance, std::int32_t* __restrict cells, std::int32_t* __restrict incident,

@@ -1,5 +1,7 @@
 #include "bodies/links/occluded_links.hpp"
 
+#include "core/base/check.hpp"
+
 #include <algorithm>
 
 namespace thalweg::bodies {
@@ -46,15 +48,9 @@ void OccludedLinks::mark(std::int32_t slot) {
 }
 
 void OccludedLinks::mark_around(const Index3& local) {
-  const Index3& n = cells_.indexing().size();
   for (int i = 1; i < D3Q19::directions; ++i) {
-    Index3 at;
-    bool in_memory = true;
-    for (int a = 0; a < 3; ++a) {
-      at[a] = local[a] + D3Q19::c[i][a];
-      in_memory = in_memory && at[a] >= -1 && at[a] <= n[a];
-    }
-    if (in_memory) mark(cells_.body(cells_.indexing().index(at[0], at[1], at[2])));
+    const Index3 at{local[0] + D3Q19::c[i][0], local[1] + D3Q19::c[i][1], local[2] + D3Q19::c[i][2]};
+    if (cells_.indexing().in_memory(at)) mark(cells_.body(cells_.indexing().index(at[0], at[1], at[2])));
   }
 }
 
@@ -101,9 +97,10 @@ void OccludedLinks::add(const Link& link, const Vec3& from, double distance, Lin
   if (moments) moments->add(momentum, arm);
 }
 
-// Where grains overlap, x_f can be inside this one, too. A line that just misses the surface, because the cells are
-// those of a place a little apart, meets it where it is nearest to the centre.
+// If grains overlap, x_f can be inside this one too. A line may just miss the surface because the cells belong to a
+// slightly different position; its crossing is then the point nearest to the centre.
 void OccludedLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  CHECK(links_.size() <= bodies.size() && (!moments || moments->size() == bodies.size()));
   for (std::size_t slot = 0; slot < links_.size(); ++slot)
     for (const Link& link : links_[slot]) {
       const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);

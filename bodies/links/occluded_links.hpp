@@ -1,5 +1,4 @@
-// Links without a fluid cell: where another grain or a wall of the box hides a patch of a grain's surface from the
-// fluid.
+// Links without a fluid cell, where another grain or a wall of the box occludes a patch of a grain's surface.
 //
 // A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
 // runs there, but a fluid between the two would press. The exchange counts populations less their weight

@@ -1,6 +1,7 @@
 #include "bodies/links/solids.hpp"
 
 #include "bodies/map/lattice_vectors.hpp"
+#include "core/base/check.hpp"
 #include "core/geometry/sphere.hpp"
 
 #include <algorithm>
@@ -66,6 +67,7 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
 }
 
 void Solids::move_to(int solid, const RigidTransform& transform) {
+  CHECK(solid >= 0 && solid < count() && moves(solid));
   const auto s = static_cast<std::size_t>(solid);
   move(at_start_[s], transform, present_[s]);
   centres_[s] = transform.centre;

@@ -48,8 +48,8 @@ public:
 
   int count() const { return static_cast<int>(present_.size()); }
   bool moves(int solid) const { return group_of_[static_cast<std::size_t>(solid)] != standing; }
-  // What arms and the motion are taken about: of a solid that stands still the middle of its extent, of one that moves
-  // the centre of its place.
+  // Reference point of arms and motion: the middle of the extent of a solid at rest, the centre of the transform of a
+  // moving one.
   const Vec3& centre(int solid) const { return centres_[static_cast<std::size_t>(solid)]; }
 
   // Moves a solid that moves, with its cells and distances, to a place.
@@ -111,13 +111,12 @@ private:
   const lbm::CellMap& cells_;
   const lbm::RowTiles& tiles_;
   PeriodicBox box_;                   // cells
-  std::vector<SolidShape> at_start_;  // of those that move
+  std::vector<SolidShape> at_start_;  // shapes of those that move
   std::vector<SolidShape> present_;
   std::vector<Vec3> centres_;
   std::vector<Group> groups_;
   std::vector<std::size_t> group_of_;
-  // Where the cells of a coordinate inside the box are in memory, along each axis: owned, and in the layers of periodic
-  // axes.
+  // Local coordinates of each coordinate inside the box, along each axis: owned, and in the layers of periodic axes.
   std::array<std::vector<std::vector<int>>, 3> locals_;
   std::vector<std::uint8_t> inside_;  // scratch: of every cell in memory, whether it is inside the group at hand
 };

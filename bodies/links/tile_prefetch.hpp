@@ -12,7 +12,7 @@ namespace thalweg::bodies {
 template <typename Real>
 class TilePrefetch {
 public:
-  // For one step, during which the arrangement stays. Both must outlive this.
+  // Valid for one step, within which the arrangement does not change. Both arguments must outlive it.
   TilePrefetch(const lbm::Populations<Real>& populations, const lbm::RowTiles& tiles)
       : indexing_(populations.indexing()), tiles_(tiles), sent_(populations.sent()) {}
 
@@ -38,7 +38,7 @@ public:
 
 private:
   static constexpr int cells_per_line = 64 / sizeof(Real);
-  // One more, as a row begins anywhere in a line.
+  // One line more, because a row may begin anywhere in a line.
   int lines_per_row() const { return indexing_.size()[0] / cells_per_line + 1; }
 
   const lbm::CellIndexing& indexing_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bodies/map/link_table.hpp"
+#include "core/base/check.hpp"
 
 #include <cstdint>
 
@@ -16,7 +17,10 @@ public:
 
   int count() const { return count_; }
 
-  void begin(int count) { count_ = count; }
+  void begin(int count) {
+    CHECK(count <= capacity);
+    count_ = count;
+  }
 
   // A link: delta, its crossing from the own body's centre, and rho - 1 at x_f; the body that covers x_ff, and the
   // vector from its centre to that of the own body. Cells.

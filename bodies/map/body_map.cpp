@@ -1,5 +1,7 @@
 #include "bodies/map/body_map.hpp"
 
+#include "core/base/check.hpp"
+
 #include <algorithm>
 #include <tuple>
 
@@ -7,9 +9,14 @@ namespace thalweg::bodies {
 
 using lbm::CellMap;
 
-int BodyMap::slot_of(GlobalId id) const {
+BodySlot BodyMap::slot_of(GlobalId id) const {
   const auto found = slot_of_id_.find(id);
-  return found == slot_of_id_.end() ? -1 : found->second;
+  return found == slot_of_id_.end() ? BodySlot::none : found->second;
+}
+
+MappedBody& BodyMap::body(BodySlot slot) {
+  CHECK(index_of(slot) < bodies_.size());
+  return bodies_[index_of(slot)];
 }
 
 void BodyMap::assign(const Index3& local, std::ptrdiff_t cell, std::int32_t slot) {
@@ -32,7 +39,8 @@ bool BodyMap::covers(const Index3& local) const {
                                    : beyond_.contains(key_beyond(local));
 }
 
-void BodyMap::claim(int slot, const Index3& local) {
+void BodyMap::claim(BodySlot claimant, const Index3& local) {
+  const auto slot = static_cast<std::int32_t>(claimant);
   if (!cells_.indexing().in_memory(local)) {
     std::vector<int>& there = beyond_[key_beyond(local)];
     if (std::find(there.begin(), there.end(), slot) == there.end()) there.push_back(slot);
@@ -54,7 +62,8 @@ void BodyMap::claim(int slot, const Index3& local) {
   assign(local, cell, slot);
 }
 
-void BodyMap::give_up(int slot, const Index3& local) {
+void BodyMap::give_up(BodySlot holder, const Index3& local) {
+  const auto slot = static_cast<std::int32_t>(holder);
   if (!cells_.indexing().in_memory(local)) {
     const auto there = beyond_.find(key_beyond(local));
     if (there == beyond_.end()) return;
@@ -89,7 +98,7 @@ void BodyMap::withdraw(int slot, std::ptrdiff_t cell) {
 }
 
 const std::vector<CellChange>& BodyMap::settle() {
-  // One entry a cell: its first state before, its last now.
+  // One change per cell: from its first state to its last.
   const auto order = [](const CellChange& a, const CellChange& b) {
     return std::tie(a.cell[2], a.cell[1], a.cell[0]) < std::tie(b.cell[2], b.cell[1], b.cell[0]);
   };
@@ -108,10 +117,11 @@ const std::vector<CellChange>& BodyMap::settle() {
 
 void BodyMap::begin_update() { changes_.clear(); }
 
-int BodyMap::add(GlobalId id, double radius, GlobalId clump) {
-  int slot;
+BodySlot BodyMap::add(GlobalId id, double radius, GlobalId clump) {
+  CHECK(!slot_of_id_.contains(id));
+  BodySlot slot;
   if (free_slots_.empty()) {
-    slot = static_cast<int>(bodies_.size());
+    slot = slot_at(bodies_.size());
     bodies_.emplace_back();
   } else {
     slot = free_slots_.back();
@@ -123,6 +133,7 @@ int BodyMap::add(GlobalId id, double radius, GlobalId clump) {
 }
 
 void BodyMap::add_solids(const std::vector<bool>& moves) {
+  CHECK(bodies_.empty());
   solids_ = static_cast<int>(moves.size());
   for (int slot = 0; slot < solids_; ++slot) {
     const GlobalId first = GlobalId(moves[static_cast<std::size_t>(slot)] ? -1 : -2) * solids_ - 1;
@@ -130,20 +141,22 @@ void BodyMap::add_solids(const std::vector<bool>& moves) {
   }
 }
 
-void BodyMap::remove(int slot) {
+void BodyMap::remove(BodySlot slot) {
+  CHECK(index_of(slot) >= static_cast<std::size_t>(solids_) && !body(slot).is_free());
   remap(slot, Vec3::Constant(2.0 * nowhere));
   slot_of_id_.erase(body(slot).id);
   body(slot).id = MappedBody::nobody;
   free_slots_.push_back(slot);
 }
 
-void BodyMap::remap(int slot, const Vec3& centre) {
+void BodyMap::remap(BodySlot slot, const Vec3& centre) {
+  CHECK(index_of(slot) >= static_cast<std::size_t>(solids_) && !body(slot).is_free());
   const Vec3 reach = Vec3::Constant(body(slot).radius);
   const Vec3 old = body(slot).centre;
   body(slot).centre = centre;
   const bool was_here = old.x() > nowhere, is_here = centre.x() > nowhere;
   if (was_here && is_here && (centre - old).squaredNorm() < 1.0) {
-    // Which cells are near the edge of both spheres is decided as if they were a little larger.
+    // The margin finds all cells near the edge of both spheres.
     toggle_cells(slot, centre, reach + (centre - old).cwiseAbs() + Vec3::Constant(1e-6), old, centre);
   } else {
     if (was_here) toggle_cells(slot, old, reach, old, centre);
@@ -153,7 +166,8 @@ void BodyMap::remap(int slot, const Vec3& centre) {
 
 // Only cells that are inside at one of the two places and not at the other can change hands; what the grain holds or
 // claims of the others stays.
-void BodyMap::toggle_cells(int slot, const Vec3& middle, const Vec3& half_width, const Vec3& old, const Vec3& now) {
+void BodyMap::toggle_cells(BodySlot slot, const Vec3& middle, const Vec3& half_width, const Vec3& old,
+                           const Vec3& now) {
   for (int a = 0; a < 3; ++a) {
     local_cells_.along(a, middle[a], half_width[a], old[a], layers, before_[a]);
     local_cells_.along(a, middle[a], half_width[a], now[a], layers, after_[a]);
@@ -172,7 +186,7 @@ void BodyMap::toggle_cells(int slot, const Vec3& middle, const Vec3& half_width,
     }
 }
 
-void BodyMap::toggle_row(int slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after) {
+void BodyMap::toggle_row(BodySlot slot, int y, int z, const Sphere::Chord& before, const Sphere::Chord& after) {
   const std::size_t width = x_after_.size();
   turns_.resize(width);
   unsigned any = 0;

@@ -1,7 +1,8 @@
 #include "bodies/map/link_table.hpp"
 
+#include "core/base/check.hpp"
+
 #include <algorithm>
-#include <stdexcept>
 
 namespace thalweg::bodies {
 
@@ -93,7 +94,9 @@ void LinkTable::drop_chunk(Tile& tile, std::uint32_t chunk) {
 }
 
 void LinkTable::replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings) {
-  if (body >= LinkTag::bodies) throw std::logic_error("more bodies than a tag can tell apart (Bodies::check_count())");
+  CHECK(body >= 0 && body < LinkTag::bodies);  // Bodies::check_count()
+  CHECK(tile >= 0 && static_cast<std::size_t>(tile) < tiles_.size());
+  CHECK(crossings.empty() || crossings.size() == links.size());
   if (static_cast<std::size_t>(body) >= chunks_of_.size()) {
     chunks_of_.resize(body + 1);
     sums_.resize(body + 1);
@@ -159,7 +162,8 @@ void LinkTable::put(Tile& tile, Chunk& chunk, std::span<const Link> links, std::
   sums -= chunk.sums;
   const auto is_narrow = [](const Link& link) { return LinkTag::is_narrow(link.tag); };
   chunk.narrow = static_cast<std::uint32_t>(std::count_if(links.begin(), links.end(), is_narrow));
-  std::uint32_t next[2] = {chunk.first + chunk.narrow, chunk.first};  // of those not covered, of those covered
+  std::uint32_t next[2] = {chunk.first + chunk.narrow,
+                           chunk.first};  // first of the other links, and of the narrow ones
   std::array<int, lbm::D3Q19::directions> by_direction{};
   for (std::size_t k = 0; k < links.size(); ++k) {
     const std::uint32_t at = next[is_narrow(links[k])]++;

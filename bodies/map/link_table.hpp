@@ -1,10 +1,10 @@
 // Cut lattice links: where a body's surface crosses the line from a fluid cell to its solid neighbour.
 //
-// A link is two words, place and tag, and says which cells it joins; where the surface crosses it follows from the
-// body's radius and present place when the link is applied (link_crossings.hpp), or is kept beside it (bodies of any
-// shape that stand still). So a link changes only when a cell changes hands, however its body moves. Links are kept
-// tile by tile (lbm::RowTiles, by the fluid cell) and, within a tile, body by body in memory order: the links of one
-// body in one tile are a chunk. The lattice knows bodies as rigid motions, and nothing of grains.
+// A link is two words, xy and tag, which name the cells it joins. Its crossing with the surface is computed from the
+// body's radius and present centre when the link is applied (link_crossings.hpp), or stored beside it (solids of any
+// shape). So a link changes only when a cell changes hands, however its body moves. Links are kept tile by tile
+// (lbm::RowTiles, by the fluid cell) and, within a tile, body by body in memory order: the links of one body in one
+// tile are a chunk. The lattice knows bodies as rigid motions, and nothing of grains.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -35,9 +35,9 @@ struct LinkXY {
 struct LinkTag {
   static constexpr std::uint32_t direction_mask = 31;  // i, from the fluid cell into the body
   static constexpr std::uint32_t enclosed = 32;        // flag: x_f is one of EnclosedCells
-  static constexpr int narrow_shift = 12;              // 1: a body covers x_f - c_i
+  static constexpr int narrow_shift = 12;              // 1: narrow, a body covers x_f - c_i
   static constexpr int body_shift = 13;                // the body that covers x_f - c_i
-  // As many bodies as a tag can tell apart.
+  // Number of bodies that a tag can distinguish.
   static constexpr std::int32_t bodies = 1 << (32 - body_shift);
   // c_i + 1 of an axis, so that vector code needs no table.
   static constexpr int velocity_shift(int axis) { return 6 + 2 * axis; }
@@ -48,7 +48,7 @@ struct LinkTag {
   }
 
   static constexpr bool is_narrow(std::uint32_t tag) { return (tag >> narrow_shift & 1u) != 0; }
-  static constexpr std::uint32_t upstream_body(std::uint32_t tag) { return tag >> body_shift; }  // of a covered link
+  static constexpr std::uint32_t upstream_body(std::uint32_t tag) { return tag >> body_shift; }  // of a narrow link
 
   // upstream_body: which covers x_f - c_i; -1: none.
   static constexpr std::uint32_t of(int direction, std::int32_t upstream_body, bool is_enclosed = false) {
@@ -72,7 +72,7 @@ struct Link {
   std::uint32_t xy = 0, tag = 0;
 };
 
-// Where a link meets a surface that has no formula.
+// Crossing of a link with a surface that has no formula.
 struct LinkCrossing {
   float distance = 0.0f;  // delta in [0, 1]: fraction of the link from x_f to the surface
   float arm[3] = {};      // the crossing from the body's centre, cells
@@ -92,13 +92,13 @@ struct LinkStream {
 
 // A rigid body as the links see it; lattice units, global coordinates (cell centres at integer + 1/2).
 struct LinkBody {
-  double radius = 0.0;  // of a sphere; 0: any shape that stands still, whose links store their crossings
+  double radius = 0.0;  // of a sphere; 0: a solid of any shape, whose links store their crossings
   Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 
-  // What the links add to the populations that come back, w_i (returned + returned_slope.c_i), to return the mass that
-  // the fluid lost at this body.
+  // Mass returned per link, w_i (returned + returned_slope.c_i), added to the populations that come back to replace
+  // what the fluid lost at this body.
   double returned = 0.0;
   Vec3 returned_slope = Vec3::Zero();
 
@@ -108,7 +108,7 @@ struct LinkBody {
   std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c and what the caller adds
   std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
 
-  // To be called at the beginning of every step: sums over many steps leave their range (core/sums/sum_range.hpp).
+  // Call it at the beginning of every step: sums over many steps leave their range (core/sums/sum_range.hpp).
   void clear_sums() {
     force = torque = {};
     mass = pressure = 0;
@@ -126,7 +126,7 @@ struct LinkSums {
   static constexpr int size = 10;
   std::array<std::int64_t, size> sums{};  // w_i;  w_i c_i: x, y, z;  w_i c_ia c_ib: xx, yy, zz, xy, xz, yz
 
-  // Of links[i] links of each direction i.
+  // Sums over links[i] links of each direction i.
   static LinkSums of(const std::array<int, lbm::D3Q19::directions>& links);
   LinkSums& operator+=(const LinkSums& other);
   LinkSums& operator-=(const LinkSums& other);
@@ -143,10 +143,10 @@ public:
   struct Chunk {
     std::int32_t body = -1;                            // slot of the body; -1: the chunk is free
     std::uint32_t first = 0, count = 0, capacity = 0;  // capacity: with room for the copies
-    std::uint32_t narrow = 0;                          // the first so many have a body at x_f - c_i
+    std::uint32_t narrow = 0;                          // as many links at the front have a body at x_f - c_i
     LinkSums sums;
   };
-  // What the pass over the links needs of a chunk: padded(count) links are there.
+  // A chunk as the pass over the links reads it; padded(count) links are present.
   struct LinkRange {
     std::int32_t body;
     std::uint32_t first, count, narrow;
@@ -171,8 +171,8 @@ public:
   std::size_t count() const;                // all links
   const LinkSums& sums_of(int body) const;  // over its links in all tiles; zero for a body without links
 
-  // Replaces the links of a body in a tile; crossings: one a link of a body that stores them, else empty. Throws
-  // std::logic_error if there are more bodies than a tag can tell.
+  // Replaces the links of a body in a tile; crossings: one a link of a body that stores them, else empty. Bodies
+  // are below LinkTag::bodies.
   void replace(int body, int tile, std::span<const Link> links, std::span<const LinkCrossing> crossings = {});
   // Drops the links of a body in all tiles.
   void remove(int body);

@@ -1,5 +1,5 @@
-// Which cells of this rank's memory lie around a point. Near a periodic face, or in a box that one rank spans alone, a
-// global cell can be in memory more than once: as an owned cell and as a ghost.
+// Cells of this rank's memory around a point. Near a periodic face, or in a box that one rank spans alone, a global
+// cell can be in memory more than once: as an owned cell and as a ghost.
 #pragma once
 
 #include "core/parallel/decomposition.hpp"
@@ -35,7 +35,7 @@ public:
       for (int g = first; g <= last; ++g) {
         const int local = g + image * cells - block_.lower[axis];
         if (local < -ghosts || local >= n + ghosts) continue;
-        // From the cell's coordinate inside the box, so that the bits do not depend on which image was asked for.
+        // Uses the coordinate inside the box, so that the bits do not depend on the image.
         const int wrapped = g >= 0 && g < cells ? g : (g % cells + cells) % cells;
         double offset = wrapped + 0.5 - reference;
         if (periodic) {

@@ -1,5 +1,7 @@
 #include "bodies/map/occluded_patches.hpp"
 
+#include "core/base/check.hpp"
+
 #include <algorithm>
 
 namespace thalweg::bodies {
@@ -80,8 +82,7 @@ Vec3 OccludedPatches::direction(const Pair& pair, const std::vector<LinkBody>& b
   return outward;
 }
 
-// Numbers are rounded before they are multiplied by the patch, so that the parts of a patch on several ranks add up to
-// the whole.
+// Rounds before it multiplies by the patch, so that the parts of a patch on several ranks add up to the whole.
 void OccludedPatches::press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment) {
   const double line = 2.0 * excess / 36.0;
   const std::int64_t force = LatticeFixed::from(line);
@@ -95,7 +96,7 @@ void OccludedPatches::press(const Patch& patch, const Vec3& arm, double excess, 
                 exact_sum(exact_product(half[k % 3], patch.sum[k / 3]), exact_product(half[k / 3], patch.sum[k % 3])));
 }
 
-// On a solid, along a line through the centre of the sphere.
+// Adds the opposite force to a solid, along a line through the centre of the sphere.
 void OccludedPatches::press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const {
   press(patch, Vec3::Zero(), excess, solid, nullptr);
   if (!solid.turns) return;
@@ -118,6 +119,8 @@ void OccludedPatches::give_mass(const Patch& patch, const Vec3& velocity, LinkBo
 
 void OccludedPatches::apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
                             double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+  CHECK(mapped.size() == bodies.size() && surrounding.size() == bodies.size());
+  CHECK(!moments || moments->size() == bodies.size());
   for (const auto& [key, patch] : patches_) {
     const Pair pair = pair_of(key);
     const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);

@@ -1,4 +1,4 @@
-// The patches of a grain's surface that other grains or walls of the box hide from the fluid, as vectors.
+// Patches of a grain's surface that other grains or walls of the box occlude from the fluid, as vectors.
 //
 // A lattice line that enters a cell of grain p from a cell of grain q, or from beyond a wall, has no fluid on it. What
 // such lines would add to the force in a fluid of uniform excess density D is 2 D h, with h = sum w_i c_i over them and
@@ -35,14 +35,13 @@ class OccludedPatches {
 public:
   OccludedPatches(const Decomposition& decomposition, const Block& block, const lbm::CellMap& cells);
 
-  // To be called before the map gives a cell in memory (local coordinates) to `now`, a slot or CellMap::fluid.
+  // Call it before the map gives a cell in memory (local coordinates) to `now`, a slot or CellMap::fluid.
   void cell_changes(const Index3& local, std::int32_t now);
 
-  // Adds to the bodies the force of the fluid on what is hidden by this rank's cells and takes from their mass what is
-  // given in another's place; the symmetric part of sum F_a x_b is added to moments, where given, but for what solids
-  // hide, whose direction follows from the whole patch: by_solids(). surrounding: by
-  // slot, rho - rho_rest around the grain; reference: that presses on nothing (lbm/interpolated_bounce_back.hpp).
-  // solids: so many slots, the first ones.
+  // Adds to the bodies the force of the fluid on the patches occluded by this rank's cells, and subtracts from their
+  // mass what is given on behalf of another body. moments, if given, gets the symmetric part of sum F_a x_b, except for
+  // patches occluded by solids, whose direction follows from the whole patch (by_solids()). surrounding: rho - rho_rest
+  // around each grain, by slot; reference: density deviation that exerts no force; solids: their number.
   void apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
              double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
@@ -79,7 +78,7 @@ private:
   void count(std::int32_t p, std::int32_t q, int direction, int lines);
 
   PeriodicBox box_;                              // cells
-  std::array<bool, 3> wall_below_, wall_above_;  // whether the block ends at a wall, along each axis
+  std::array<bool, 3> wall_below_, wall_above_;  // true where the block ends at a wall, along each axis
   const lbm::CellMap& cells_;
   std::unordered_map<std::uint64_t, Patch> patches_;
 };

@@ -19,7 +19,7 @@ struct SolidSphere {
 // A mesh must be closed and wound outwards.
 using SolidShape = std::variant<SolidSphere, TriangleMesh>;
 
-// Where a rigid body has come to: its point `pivot` at the start is at `centre`, and it has turned about it.
+// Rigid displacement: the point that was at `pivot` at the start is at `centre`, and the body has turned about it.
 struct RigidTransform {
   Vec3 pivot = Vec3::Zero(), centre = Vec3::Zero();
   Mat3 turn = Mat3::Identity();
@@ -27,7 +27,7 @@ struct RigidTransform {
   Vec3 of(const Vec3& at_start) const { return centre + turn * (at_start - pivot); }
 };
 
-// Writes a shape, moved to a place, over `moved`, which has been the same shape before.
+// Writes the transformed shape over `moved`, which must be the same shape.
 void move(const SolidShape& at_start, const RigidTransform& transform, SolidShape& moved);
 
 struct Extent {

@@ -1,4 +1,4 @@
-// What a system writes its state to and reads it from, without knowing the file format (io/ has HDF5).
+// Interface to a saved state, independent of the file format (io/ has HDF5).
 //
 // A path is "group/name". A dataset is a global array of up to four dimensions, slowest first; every rank writes or
 // reads its own box of it. All calls are collective: every rank makes the same calls with the same paths and global

@@ -1,5 +1,7 @@
-// Where the wall time goes: seconds per named phase of the step.
+// Wall time of each named phase of the step, in seconds.
 #pragma once
+
+#include "core/base/check.hpp"
 
 #include <chrono>
 #include <string>
@@ -28,7 +30,10 @@ public:
     PhaseTimer& timer_;
     int outer_;
   };
-  Scope measure(int phase) { return Scope(*this, phase); }
+  Scope measure(int phase) {
+    CHECK(phase >= 0 && static_cast<std::size_t>(phase) < names_.size());
+    return Scope(*this, phase);
+  }
 
   // (name, seconds) in order of creation.
   std::vector<std::pair<std::string, double>> seconds() const;

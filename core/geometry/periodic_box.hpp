@@ -25,7 +25,7 @@ struct PeriodicBox {
     return d;
   }
 
-  // The same point inside [0, size) on the periodic axes. Needs a point less than one size outside.
+  // Image of a point inside [0, size) on the periodic axes; the point must be less than one size outside.
   Vec3 wrapped(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (!periodic[axis]) continue;
@@ -38,7 +38,7 @@ struct PeriodicBox {
     return p;
   }
 
-  // The same from however far away.
+  // As wrapped(), for a point at any distance.
   Vec3 wrapped_from_afar(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis)
       if (periodic[axis]) p[axis] -= size[axis] * std::floor(p[axis] / size[axis]);

@@ -37,9 +37,9 @@ struct Sphere {
     return (-b - std::sqrt(discriminant)) / a;
   }
 
-  // The same t of a link that is known to end inside: the usual root, written so that nothing cancels,
-  // t = q/(sqrt(b^2 - a q) - b), and without a branch. Beyond [0, 1], or not a number, where round-off has put an end
-  // on the wrong side: the caller puts the crossing at the end.
+  // Crossing t of a link that is known to end inside: the usual root, written so that nothing cancels, t = q/(sqrt(b^2
+  // - a q) - b), and without a branch. Beyond [0, 1], or not a number, where round-off has put an end on the wrong
+  // side: the caller puts the crossing at the end.
   template <typename Number>
   [[gnu::always_inline]] Number link_crossing(Number dx, Number dy, Number dz, Number cx, Number cy, Number cz) const {
     const Number b = cx * dx + cy * dy + cz * dz;

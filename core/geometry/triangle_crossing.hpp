@@ -1,4 +1,4 @@
-// Where a line along x crosses a triangle, for what is inside a closed surface.
+// Crossings of lines along x with a triangle, which tell the inside of a closed surface.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -10,9 +10,9 @@ namespace thalweg {
 
 using Corners = std::array<Vec3, 3>;
 
-// Where a line along +x at (y, z) crosses a triangle: x, and +1 where it enters the solid, -1 where it leaves. A line
-// through an edge or a corner crosses exactly one of the triangles that meet there, so that the sum over a closed
-// surface is right for every line.
+// Crossing of a line along +x at (y, z) with a triangle: x, and +1 where the line enters the solid, -1 where it leaves.
+// A line through an edge or a corner crosses exactly one of the triangles that meet there, so that the sum over a
+// closed surface is right for every line.
 struct Crossing {
   double x;
   int winding;

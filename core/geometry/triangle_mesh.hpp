@@ -15,8 +15,8 @@ struct TriangleMesh {
   bool operator==(const TriangleMesh&) const = default;
 };
 
-// What keeps a mesh from enclosing a volume, as the part of a sentence ("3 edges belong to one triangle only"); empty
-// if nothing does: every edge joins two triangles that agree on which side is out.
+// Reason why a mesh encloses no volume, as part of a sentence ("3 edges belong to one triangle only"). Empty if it
+// encloses one: every edge joins two triangles that agree on which side is out.
 std::string what_is_open(const TriangleMesh& mesh);
 
 // Volume of a closed mesh, in its unit of length cubed; negative where the triangles are wound clockwise.

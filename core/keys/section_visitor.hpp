@@ -1,4 +1,4 @@
-// One description of the keys of a section serves three uses: reading it, writing it back with all defaults, and
+// Description of the keys of a section, which serves three uses: reading it, writing it back with all defaults, and
 // documenting it. For a plain struct T write once
 //
 //   void describe(SectionVisitor& visit, FluidCase& fluid) {
@@ -10,6 +10,7 @@
 // struct has before it is read; `required` keys and optional values have none. Words of choices: named_choice.hpp.
 #pragma once
 
+#include "core/base/check.hpp"
 #include "core/base/types.hpp"
 #include "core/keys/named_choice.hpp"
 
@@ -103,7 +104,7 @@ public:
     value = choices[index].value;
   }
 
-  // With the enumeration's own words, choices_of().
+  // The words are those of the enumeration, choices_of().
   template <typename Choice>
   void choice(const std::string& key, Choice& value, const SectionKey& about) {
     choice(key, value, choices_of(value), about);
@@ -132,7 +133,7 @@ public:
     for (std::size_t index : indices) values.push_back(choices[index].value);
   }
 
-  // What a section holds, where a struct and its describe() will not do: where it depends on other sections.
+  // Contents of a section that depends on other sections, for which a struct and its describe() do not suffice.
   using Body = std::function<void(SectionVisitor&)>;
   void section(const std::string& key, const SectionKey& about, const Body& body) {
     if (belongs(key, about.only_if)) nested(key, true, about, body);
@@ -207,7 +208,7 @@ protected:
   virtual void item(const std::string& key, std::size_t index, const Body& body) = 0;
   virtual void example_item(const Body&) {}  // of a list that is empty
 
-  // Whether to visit the next key although only another choice has it.
+  // True if the next key is visited although only another choice has it.
   virtual bool shows_key_with(const std::string&) { return false; }
 
 private:
@@ -222,7 +223,8 @@ private:
   template <typename Choice>
   static std::size_t index_of(const Choice& value, const std::vector<NamedChoice<Choice>>& choices) {
     std::size_t index = 0;
-    while (index + 1 < choices.size() && choices[index].value != value) ++index;
+    while (index < choices.size() && choices[index].value != value) ++index;
+    CHECK(index < choices.size());  // the value has a word
     return index;
   }
   template <typename Choice>

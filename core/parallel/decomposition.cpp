@@ -1,5 +1,6 @@
 #include "core/parallel/decomposition.hpp"
 
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 
 #include <fmt/format.h>
@@ -77,13 +78,14 @@ Decomposition::Decomposition(const Index3& cells, double spacing, const std::arr
 }
 
 Decomposition Decomposition::balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const {
+  for (std::size_t a = 0; a < 3; ++a) CHECK(weights[a].size() == static_cast<std::size_t>(cells_[static_cast<int>(a)]));
   Decomposition result = *this;
   for (int a = 0; a < 3; ++a) {
     const int slabs = layout_[a];
     std::vector<int>& cuts = result.cuts_[a];
     std::int64_t total = 0, sum = 0;
     for (const std::int64_t weight : weights[a]) total += weight;
-    // In fewer bits where products with the number of slabs would not fit.
+    // Bits to drop so that products with the number of slabs fit.
     const int spare = std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(total))) - 40);
     std::vector<std::int64_t> of_plane = weights[a];
     total = 0;
@@ -107,6 +109,7 @@ PeriodicBox Decomposition::box() const {
 PeriodicBox Decomposition::cell_box() const { return {Vec3(cells_[0], cells_[1], cells_[2]), periodic_}; }
 
 Index3 Decomposition::coordinates_of(int rank) const {
+  CHECK(rank >= 0 && rank < ranks());
   return {rank % layout_[0], rank / layout_[0] % layout_[1], rank / (layout_[0] * layout_[1])};
 }
 

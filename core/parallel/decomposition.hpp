@@ -1,4 +1,5 @@
-// Who owns which part of the box: a Cartesian grid of blocks of cells, one block a rank, shared by lattice and grains.
+// Decomposition of the box among ranks: a Cartesian grid of blocks of cells, one block a rank, shared by lattice and
+// grains.
 //
 // Cell (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the spacing; its centre, where the populations live, is at
 // (i+1/2, j+1/2, k+1/2) times the spacing. Walls stand on the outer faces of the box (half a link from the last
@@ -55,8 +56,9 @@ public:
   // alike everywhere in plan, so columns balance) and cuts in x fourfold. Throws InputError if none fits.
   static Index3 best_layout(const Index3& cells, int ranks);
 
-  // The same layout with cuts that share weights as evenly as whole cells allow: weights[a][k] >= 0 of the cells with
-  // coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is cut.
+  // Decomposition with the same layout whose cuts share weights as evenly as whole cells allow: weights[a][k] >= 0 of
+  // the cells with coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is
+  // cut.
   Decomposition balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const;
   bool operator==(const Decomposition& other) const = default;
 

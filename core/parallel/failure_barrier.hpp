@@ -7,7 +7,7 @@
 
 namespace thalweg {
 
-// How long a failed rank waits for the others before it takes them for stuck: longer than any step.
+// Time that a failed rank waits for the others before it considers them stuck: longer than any step.
 inline constexpr double seconds_to_wait_for_others = 10.0;
 
 class FailureBarrier {

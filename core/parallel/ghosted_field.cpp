@@ -1,5 +1,6 @@
 #include "core/parallel/ghosted_field.hpp"
 
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_count.hpp"
 #include "core/parallel/mpi_session.hpp"
 
@@ -24,7 +25,9 @@ GhostedField::GhostedField(const Decomposition& decomposition, MPI_Comm communic
       components_(components),
       width_(width),
       size_(decomposition.block_of(rank_of(communicator)).size()),
-      values_(place(size_[0] + width - 1, size_[1] + width - 1, size_[2] + width - 1) + components, 0.0) {}
+      values_(place(size_[0] + width - 1, size_[1] + width - 1, size_[2] + width - 1) + components, 0.0) {
+  CHECK(components > 0 && width >= 0 && width <= Decomposition::min_cells_per_rank);
+}
 
 // Layers [from, to) along an axis: with ghosts along the axes that are done already, so that edges and corners come
 // along.

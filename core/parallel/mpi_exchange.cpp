@@ -1,3 +1,4 @@
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_count.hpp"
 #include "core/parallel/mpi_session.hpp"
 
@@ -49,7 +50,7 @@ std::vector<Parcel>::iterator first_from(int rank, std::vector<Parcel>& parcels)
                           [](const Parcel& parcel, int wanted) { return parcel.rank < wanted; });
 }
 
-// Who sends how many rows to this rank, in the order of ranks.
+// Senders of rows to this rank, and their numbers of rows, in the order of ranks.
 std::vector<Parcel> announced(MPI_Comm communicator, int tag, const std::vector<Parcel>& parcels) {
   std::vector<std::uint64_t> counts(parcels.size());
   std::vector<MPI_Request> sends(parcels.size());
@@ -108,6 +109,7 @@ Parcel& parcel_to(int rank, std::vector<Parcel>& parcels) { return *first_from(r
 void exchange_parcels(MPI_Comm communicator, const std::vector<Parcel>& parcels, const void* packed,
                       std::size_t row_size, const std::function<void*(std::size_t)>& place) {
   const int self = rank_of(communicator);
+  CHECK(parcels.empty() || (parcels.front().rank >= 0 && parcels.back().rank < size_of(communicator)));
   const Tags tags = tags_of_exchange(communicator);
   const auto* rows = static_cast<const std::byte*>(packed);
   std::vector<Parcel> elsewhere, senders;

@@ -1,6 +1,8 @@
 // Template bodies of mpi_session.hpp.
 #pragma once
 
+#include "core/base/check.hpp"
+
 namespace thalweg {
 
 namespace detail {
@@ -13,6 +15,7 @@ struct Packed {
 
 template <typename Row>
 Packed<Row> packed(const std::vector<Row>& rows, const std::vector<int>& destination) {
+  CHECK(destination.size() == rows.size());
   Packed<Row> result{std::vector<Row>(rows.size()), parcels_to(destination)};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Parcel& parcel = parcel_to(destination[i], result.parcels);
@@ -42,6 +45,7 @@ std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& ro
 
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, std::vector<Row>&& rows, const std::vector<int>& destination) {
+  CHECK(destination.size() == rows.size());
   if (size_of(communicator) == 1) return std::move(rows);
   const detail::Packed<Row> sent = detail::packed(rows, destination);
   std::vector<Row>().swap(rows);

@@ -14,7 +14,7 @@ namespace {
 
 enum Outcome : int { well, input_error, run_error };
 
-// What `work` throws on this rank.
+// Outcome of `work` on this rank: which kind of exception it throws.
 Outcome outcome_of(const std::function<void()>& work, std::string& message) {
   try {
     work();
@@ -28,7 +28,7 @@ Outcome outcome_of(const std::function<void()>& work, std::string& message) {
   return well;
 }
 
-// On every rank, what has happened on `rank`.
+// Throws on every rank the exception of `rank`.
 void throw_what_happened_on(int rank, MPI_Comm communicator, int outcome, std::string message) {
   int header[2] = {outcome, static_cast<int>(message.size())};
   MPI_Bcast(header, 2, MPI_INT, rank, communicator);

@@ -1,5 +1,6 @@
 #include "core/parallel/packed_exchange.hpp"
 
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_count.hpp"
 
 #include <utility>
@@ -49,11 +50,13 @@ void PackedExchange::release() {
 }
 
 void PackedExchange::start() {
+  CHECK(!under_way_);
   if (!requests_.empty()) MPI_Startall(static_cast<int>(requests_.size()), requests_.data());
   under_way_ = true;
 }
 
 void PackedExchange::finish() {
+  CHECK(under_way_);
   if (!requests_.empty()) MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   under_way_ = false;
 }

@@ -1,6 +1,8 @@
-// One packed message to each neighbour and one from each, over and over, with persistent requests: the halo exchange of
-// the lattice and the ghost refresh of the grains are both this.
+// Repeated exchange of one packed message with each neighbour, by persistent requests. The halo exchange of the lattice
+// and the ghost refresh of the grains use it.
 #pragma once
+
+#include "core/base/check.hpp"
 
 #include <mpi.h>
 
@@ -32,14 +34,17 @@ public:
   // Fill every send buffer, then start(); the buffers must not be touched until finish() returns.
   template <typename T>
   T* send_buffer(std::size_t n) {
+    CHECK(n < send_.size() && !under_way_);
     return reinterpret_cast<T*>(send_[n].data());
   }
   template <typename T>
   const T* receive_buffer(std::size_t n) const {
+    CHECK(n < receive_.size() && !under_way_);
     return reinterpret_cast<const T*>(receive_[n].data());
   }
   void start();
   void finish();
+  bool under_way() const { return under_way_; }
 
 private:
   void release();

@@ -35,7 +35,7 @@ public:
   double largest(double value) const { return alone() ? value : max_over_ranks(communicator_, value); }
   double smallest(double value) const { return -largest(-value); }
 
-  // As on_all_ranks(); a process alone throws the original error.
+  // Calls on_all_ranks(); a process alone throws the original error.
   void on_all(const std::function<void()>& work) const { alone() ? work() : on_all_ranks(communicator_, work); }
 
   // The rows of all ranks, in order of rank, on every rank. Rows are trivially copyable.

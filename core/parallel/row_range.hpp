@@ -1,7 +1,8 @@
-// How the rows of a dataset are shared among the ranks that write or read it: evenly, in order of rank.
+// Share of the rows of a dataset that each rank writes or reads: even, in order of rank.
 #pragma once
 
 #include "core/base/archive.hpp"
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_session.hpp"
 
 #include <cstdint>
@@ -39,6 +40,7 @@ struct RowRange {
 
 // The rank in whose even share of `count` rows a row falls.
 inline int rank_of_row(std::int64_t row, std::int64_t count, int ranks) {
+  CHECK(row >= 0 && row < count);
   auto rank = static_cast<int>(row * ranks / count);
   while (row >= count * (rank + 1) / ranks) ++rank;
   return rank;

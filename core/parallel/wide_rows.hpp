@@ -1,6 +1,7 @@
 // Rows of a number of values that is known only in the run, for messages between ranks.
 #pragma once
 
+#include "core/base/check.hpp"
 #include "core/parallel/mpi_session.hpp"
 
 #include <algorithm>
@@ -9,12 +10,13 @@
 
 namespace thalweg {
 
-// As exchange_rows(), of rows of `width` values, one row after the other; one message to a rank. width: the same on all
-// ranks. Frees the values before those of others arrive. Collective.
+// Exchange like exchange_rows(), for rows of `width` values, one row after the other; one message to a rank. width: the
+// same on all ranks. Frees the values before those of others arrive. Collective.
 template <typename Value>
 std::vector<Value> exchange_wide_rows(MPI_Comm communicator, std::vector<Value> values, std::size_t width,
                                       const std::vector<int>& destination) {
   static_assert(std::is_trivially_copyable_v<Value>);
+  CHECK(values.size() == width * destination.size());
   if (width == 0 || size_of(communicator) == 1) return values;
   std::vector<detail::Parcel> parcels = detail::parcels_to(destination);
   std::vector<Value> packed(values.size());

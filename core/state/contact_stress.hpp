@@ -14,7 +14,7 @@ namespace thalweg {
 // contacts, with arms from the clump's centre. Zero without contacts.
 std::vector<Mat3> contact_moments(const Snapshot& snapshot);
 
-// The same for the lubrication forces.
+// Moments of the lubrication forces, likewise.
 std::vector<Mat3> lubrication_moments(const Snapshot& snapshot);
 
 // The stress (Pa) of every grain of the view; a clump's members all have that of the clump.

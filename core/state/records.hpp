@@ -1,5 +1,5 @@
-// What an observer records for a file of its own that grows while the run goes on: arrays that get longer, and events,
-// each with arrays of its own.
+// Records of an observer for a file of its own that grows during the run: growing arrays, and events with arrays of
+// their own.
 #pragma once
 
 #include "core/state/profile.hpp"

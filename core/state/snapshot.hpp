@@ -1,4 +1,4 @@
-// What observers and writers may look at: views of a system's state in SI units, never a handle to change it.
+// Read-only views of a system's state for observers and writers, in SI units.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -83,7 +83,7 @@ class FluidSource {
 public:
   virtual ~FluidSource() = default;
 
-  // Of those cells of a region (global coordinates, the same on every rank) that this rank owns. Collective.
+  // Fields in the cells of a region (global coordinates, the same on every rank) that this rank owns. Collective.
   virtual FluidFields sample(const std::vector<FluidField>& wanted, const Block& region) const = 0;
 
   // Calls visit(cell, velocity) for every fluid cell this rank owns: global cell, m/s in full precision.
@@ -94,15 +94,15 @@ public:
     Vec3 velocity;    // m/s
     double pressure;  // Pa, beyond that of the fluid at rest with its reference density
   };
-  // Of a cell that this rank owns, by its global coordinates; none where a body covers it.
+  // State of a cell that this rank owns, by its global coordinates; none if a body covers it.
   virtual std::optional<State> state_in(const Index3& cell) const = 0;
 
   struct Drive {
     Vec3 body_force = Vec3::Zero();  // N/m^3, on every cell
     Vec3 on_top = Vec3::Zero();      // N, of the fluid on the whole face z_high, without the reference pressure
   };
-  // What drives the fluid, and its force on the upper face, in the next step. Collective; the same bits on any number
-  // of ranks.
+  // Driving force of the fluid, and its force on the upper face, in the next step. Collective; the same bits on any
+  // number of ranks.
   virtual Drive drive() const { return {}; }
 };
 
@@ -146,7 +146,7 @@ public:
   using ContactVisitor = std::function<void(std::size_t, const Vec3&, const Vec3&)>;
   virtual void for_each_contact(const ContactVisitor& visit) const = 0;
 
-  // The same for lubrication: forces between near surfaces that the fluid's cells do not resolve.
+  // Visits the lubrication forces between near surfaces, which the fluid's cells do not resolve.
   virtual void for_each_lubrication(const ContactVisitor& /*visit*/) const {}
 
   // Contacts of the chosen grains (chosen[n] != 0 for number n of the GrainView) with their partners. Arms are from the

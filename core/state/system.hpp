@@ -1,4 +1,4 @@
-// What the time loop drives: anything that advances in time, shows its state, and can be saved and loaded.
+// Interface of the time loop to anything that advances in time, shows its state, and can be saved and loaded.
 #pragma once
 
 #include "core/base/archive.hpp"
@@ -61,20 +61,20 @@ public:
   // The state as arrays for profiles.h5, where it consists of some; the same on every rank.
   virtual std::vector<Profile> profiles() const { return {}; }
 
-  // Where the diagnostic of that name, one of diagnostics(), takes its value; empty where it belongs to no place.
-  // Collective, the same on every rank; may cost as much as diagnostics().
+  // Location at which the diagnostic of that name takes its value; empty if it belongs to no location. Collective, the
+  // same on every rank; may cost as much as diagnostics().
   virtual std::optional<Location> location_of(const std::string&) const { return std::nullopt; }
 
   virtual void save(ArchiveWriter& archive) const = 0;  // everything the next step depends on; collective
   virtual void load(ArchiveReader& archive) = 0;        // throws InputError where it does not fit; collective
-  // Takes the fluid alone from the state of another run in the same box, whose cells had the size `spacing` (m), as an
-  // initial state. Throws InputError where it does not fit, or there is no fluid; collective.
+  // Takes the fluid alone from another run in the same box, whose cells had the size `spacing` (m), as an initial
+  // state. Throws InputError where it does not fit, or there is no fluid; collective.
   virtual void import_fluid(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no fluid that could be taken over.");
   }
 
-  // The same for the grains alone, with their contact springs, from a run with as many grains; velocities are kept, the
-  // time is not. To be called before import_fluid().
+  // Takes the grains alone, with their contact springs, from a run with as many grains; keeps their velocities, but not
+  // the time. Call it before import_fluid().
   virtual void import_grains(ArchiveReader&, double /*spacing*/) {
     throw InputError("this system has no grains that could be taken over.");
   }

@@ -32,7 +32,7 @@ std::vector<double> reproducible_sums(MPI_Comm communicator, std::span<const dou
 
 std::vector<double> reproducible_sums_by_bin(MPI_Comm communicator, int bins, std::size_t columns,
                                              const std::function<void(const TermTaker&)>& rows) {
-  // One reduction for the largest term of every column; infinity stands for anything not finite.
+  // Largest term of every column, by one reduction; infinity stands for anything not finite.
   std::vector<double> largest(columns, 0.0);
   std::int64_t rows_here = 0;
   rows([&](int, std::span<const double> row) {

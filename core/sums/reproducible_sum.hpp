@@ -21,9 +21,9 @@ std::vector<double> reproducible_sums(MPI_Comm communicator, std::span<const dou
 // Takes a row of terms, one a column, that belongs to a bin.
 using TermTaker = std::function<void(int bin, std::span<const double> row)>;
 
-// The same by bins, of rows that are not kept: rows(take) hands over the rows of this rank, any number of them, with
-// bins in [0, bins). It is called twice, once for the largest terms and once for the sums, and hands over the same rows
-// each time. Returns `columns` sums for each bin, bin by bin. Memory: two numbers a sum.
+// Sums by bins of rows that are not kept: rows(take) hands over the rows of this rank, any number of them, with bins in
+// [0, bins). It is called twice, once for the largest terms and once for the sums, and hands over the same rows each
+// time. Returns `columns` sums for each bin, bin by bin. Memory: two numbers a sum.
 std::vector<double> reproducible_sums_by_bin(MPI_Comm communicator, int bins, std::size_t columns,
                                              const std::function<void(const TermTaker&)>& rows);
 

@@ -1,5 +1,5 @@
-// Whether the exact sums of this process (fixed_point.hpp) have stayed within their range. A term or sum beyond it sets
-// a flag, and the time loop ends the run before anything of such a state is written: no overflow goes unnoticed.
+// Range check of the exact sums of this process (fixed_point.hpp). A term or sum out of range sets a flag, and the time
+// loop ends the run before any such state is written.
 #pragma once
 
 #include <cstdint>

@@ -47,7 +47,7 @@ struct WideSum {
            std::ldexp(static_cast<double>(static_cast<std::uint64_t>(low)), -fraction_bits);
   }
 
-  // In 64 bits; sets the flag of sum_range.hpp where they are too few.
+  // Sum in 64 bits; sets the flag of sum_range.hpp if it does not fit.
   std::int64_t narrowed() const {
     if (high != (low < 0 ? -1 : 0)) SumRange::leave();
     return low;

@@ -1,4 +1,4 @@
-// How a case says that fluid and grains, or solids, act on each other.
+// Keys of the coupling between the fluid and grains or solids.
 #pragma once
 
 #include "bodies/map/body_options.hpp"

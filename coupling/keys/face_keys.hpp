@@ -1,4 +1,4 @@
-// How a case describes a face of the box, in SI units, and what that is on the lattice.
+// Keys of a face of the box, in SI units, and the boundary condition that follows on the lattice.
 #pragma once
 
 #include "core/base/units.hpp"
@@ -20,9 +20,9 @@ struct FaceKeys {
   double pressure = 0.0;                               // Pa above the reference, pressure_outlet
   std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
 
-  // Whether it is a wall that the boundary layer of a smooth one stands on.
+  // True if it carries the boundary layer of a smooth wall.
   bool obeys_the_law_of_the_wall() const { return lbm::traits_of(type).is_smooth; }
-  // Whether it exerts shear on a flow along it.
+  // True if it exerts shear on a flow along it.
   bool drags() const { return lbm::traits_of(type).drags; }
   bool has_velocity() const { return lbm::traits_of(type).has_velocity; }
   bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
@@ -30,7 +30,7 @@ struct FaceKeys {
 
 void describe(SectionVisitor& visit, FaceKeys& face);
 
-// In the order of lbm::FaceConditions.
+// Boundary conditions in the order of lbm::FaceConditions.
 lbm::FaceConditions conditions_of(const std::array<FaceKeys, 6>& faces, const Units& units);
 
 }  // namespace thalweg::coupling

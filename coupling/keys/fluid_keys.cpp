@@ -16,7 +16,7 @@ static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
       {.meaning = "the force is that of a pressure gradient, which grains feel, too; false: on the fluid alone"});
 }
 
-// Of Zhang et al. (2022).
+// The constant of Zhang et al. (2022).
 constexpr double published_smagorinsky_constant = 0.27;
 
 lbm::Subgrid FluidKeys::subgrid() const {

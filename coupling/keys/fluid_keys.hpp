@@ -1,4 +1,4 @@
-// How a case describes the fluid, in SI units.
+// Keys of the fluid, in SI units.
 #pragma once
 
 #include "core/keys/section_visitor.hpp"

@@ -1,4 +1,4 @@
-// What the lattice fluid of a system is made of: shared by the fluid alone and the fluid with grains.
+// Parameters of the lattice fluid of a system, with or without grains.
 #pragma once
 
 #include "bodies/links/interpolated_bounce_back.hpp"

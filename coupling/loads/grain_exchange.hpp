@@ -1,7 +1,8 @@
-// What a grain keeps of its exchange with the fluid from one step to the next: named and typed, in the columns of plain
-// numbers that dem carries with the grain (dem/motion/grain_store.hpp). Number: double, or const double for reading.
+// Coupling state of a grain that lasts from one step to the next, as named values in the columns of plain numbers that
+// dem carries with the grain (dem/motion/grain_store.hpp). Number: double, or const double for reading.
 #pragma once
 
+#include "core/base/check.hpp"
 #include "core/base/types.hpp"
 
 #include <span>
@@ -19,11 +20,12 @@ public:
   using Vector = Eigen::Map<Of<Vec3>>;
   using Tensor = Eigen::Map<Of<RowMajor>>;
 
-  explicit GrainExchange(std::span<Number> columns) : columns_(columns) {}
-
   static constexpr int width = 24, width_with_stress = 42;  // columns
-  // What other ranks need of a grain in every step: what its links return, and the fluid around it. (They follow its
-  // link_position by themselves.)
+
+  explicit GrainExchange(std::span<Number> columns) : columns_(columns) { CHECK(columns.size() >= width); }
+
+  // Columns that other ranks need in every step: what the links return, and the density around the grain. (Ghosts
+  // update their link_position themselves.)
   static constexpr std::size_t first_shared = 18, shared = 5;
 
   Vector link_position() const { return vector(0); }  // the place its cells stand for, m
@@ -32,7 +34,7 @@ public:
   Vector earlier_force() const { return vector(9); }  // of the one before
   Vector earlier_torque() const { return vector(12); }
 
-  // How many exchanges there have been (2: or more).
+  // Number of exchanges so far, at most 2.
   int exchanges() const { return static_cast<int>(columns_[15]); }
   void set_exchanges(int count) const { columns_[15] = count; }
 
@@ -53,7 +55,10 @@ public:
 
 private:
   Vector vector(std::size_t first) const { return Vector(columns_.data() + first); }
-  Tensor tensor(std::size_t first) const { return Tensor(columns_.data() + first); }
+  Tensor tensor(std::size_t first) const {
+    CHECK(columns_.size() >= width_with_stress);
+    return Tensor(columns_.data() + first);
+  }
 
   std::span<Number> columns_;
 };

@@ -29,7 +29,7 @@ struct LightLoad {
     return 5.0 * spacing / (2.0 * radius) * fluid_density * Sphere{radius}.volume();
   }
 
-  // Whether a grain needs the filter: without it the lightest that held had 7.2 dx/d of the displaced mass
+  // True if a grain needs the filter: without it, the lightest stable grain had 7.2 dx/d of the displaced mass
   // (docs/theory.md, section 3, "Light grains").
   bool concerns(double mass, double radius) const { return mass < 1.6 * added_mass(radius); }
 

@@ -1,4 +1,4 @@
-// The load that drives the grains in a step, from the momentum exchanged in this and earlier steps.
+// Average of the momentum exchanged in this and earlier steps, which is the load on the grains.
 //
 // With F_n the exchange between t_n and t_n+1:
 //   mean          M_n = (F_n + F_n-1)/2: takes out the part that alternates from step to step (Ladd 1994)
@@ -22,7 +22,7 @@ namespace thalweg::coupling {
 enum class LoadAveraging { extrapolated, mean };
 std::vector<NamedChoice<LoadAveraging>> choices_of(LoadAveraging);  // its words in a case file
 
-// Exchanges that have not been yet count as zero: every exchange gives its impulse in full, however a grain begins.
+// Exchanges before the first count as zero, so that every exchange gives its full impulse.
 inline Vec3 averaged_load(LoadAveraging rule, const Vec3& now, const Vec3& last, const Vec3& before_last) {
   if (rule == LoadAveraging::mean) return 0.5 * (now + last);
   return now + 0.5 * (last - before_last);

@@ -16,7 +16,7 @@ constexpr const char* names[MassBudget::terms] = {"links", "covered_cells", "unc
 
 }  // namespace
 
-// What is owed was taken by links before.
+// Links took the owed mass before.
 void MassBudget::open(double excess, double owed) {
   sums_ = {};
   kept_ = excess + owed;

@@ -1,13 +1,13 @@
-// The balance of the fluid's mass. What counts is the excess E = sum over the fluid cells of rho - rho_rest (rho_rest =
-// 1, or the hydrostatic density): the volume that grains cover on the lattice is a staircase that gains and loses a
-// tenth of a per cent of the cells from step to step, and the sum of rho follows it; the excess, which is the pressure,
-// must not. From one step to the next
+// The balance of the fluid's mass. It follows the excess E = sum over the fluid cells of rho - rho_rest (rho_rest = 1,
+// or the hydrostatic density): the volume that grains cover on the lattice is a staircase that gains and loses a tenth
+// of a per cent of the cells from step to step, and the sum of rho follows it; the excess, which is the pressure, must
+// not. From one step to the next
 //   E changes by  links:       sum over links of f_i' - f_i^c, what is returned (mass_return.hpp) among it
 //                 covered:     less rho - rho_rest of every cell that becomes solid
 //                 uncovered:   rho - rho_rest of every cell that becomes fluid
 //                 corrections: what is regularly added to all cells (LatticeSystem)
 //                 walls:       what passes through the faces; nothing, to round-off, where none is open
-// in exact integers, so that the first four are the same on any ranks. Lattice units.
+// In exact integers, so that the first four do not depend on the number of ranks. Lattice units.
 #pragma once
 
 #include "core/base/archive.hpp"
@@ -33,8 +33,8 @@ public:
 
   // mass: what this rank adds, a LatticeFixed sum. Corrections concern the whole run and are recorded by one rank; they
   // may be larger than a LatticeFixed term.
-  void record(Term term, std::int64_t mass) { sums_[term].add(mass); }
-  void record(Term term, double mass) { sums_[term].add(WideSum::from(mass, LatticeFixed::bits)); }
+  void record(Term term, std::int64_t mass) { sums_.at(term).add(mass); }
+  void record(Term term, double mass) { sums_.at(term).add(WideSum::from(mass, LatticeFixed::bits)); }
 
   // Since the start of the run, over all ranks, by Term; all at once because a reduction is shared. Collective.
   std::array<double, terms> totals() const;

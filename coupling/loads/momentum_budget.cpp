@@ -1,5 +1,6 @@
 #include "coupling/loads/momentum_budget.hpp"
 
+#include "core/base/check.hpp"
 #include "core/geometry/symmetric_pairs.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
 #include "lbm/fluid/flow_fields.hpp"
@@ -79,6 +80,7 @@ std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::F
 template <typename Real>
 MomentumBudget momentum_budget_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
                                   const std::vector<FixedVec3>& on_grains) {
+  CHECK(on_grains.size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
   MomentumBudget budget;
   budget.planes = planes_of(fluid, units);
   budget.on_grains = over_ranks(on_grains, fluid, units.force());

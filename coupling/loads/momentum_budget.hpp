@@ -10,10 +10,10 @@
 
 namespace thalweg::coupling {
 
-// For the step that comes next. Halo, walls and links must be ready for its sweep, with the cells as they will be then.
-// on_grains: lattice units, what links and covered cells of this rank give to grains, in 2 n_z + 1 sums
-// (lbm/interpolated_bounce_back.hpp, by_height), n_z of this block. reference: rho - 1 that presses on nothing.
-// Collective; the same bits on every rank, and on any ranks.
+// Momentum budget of the coming step. Halo, walls and links must be ready for its sweep, with the cells as they will be
+// then. on_grains: momentum (lattice units) that links and covered cells of this rank give to grains, in 2 n_z + 1 sums
+// (bodies/links/interpolated_bounce_back.hpp, by_height) for the n_z planes of this block. reference: rho - 1 that
+// exerts no force. Collective; the same bits on every rank, and on any number of ranks.
 template <typename Real>
 MomentumBudget momentum_budget_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
                                   const std::vector<FixedVec3>& on_grains);

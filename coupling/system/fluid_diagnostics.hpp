@@ -1,4 +1,4 @@
-// What a survey of the lattice says about the health of a fluid, as diagnostics in the units of a run.
+// Diagnostics of a fluid from a survey of the lattice, in the units of a run.
 #pragma once
 
 #include "core/base/units.hpp"
@@ -24,8 +24,8 @@ void add_extremes(const lbm::FluidSurvey& survey, std::vector<Diagnostic>& diagn
 void add_momentum(const lbm::FluidSurvey& survey, const Vec3& force, const Units& units,
                   std::vector<Diagnostic>& diagnostics);
 
-// Where the survey found the extreme value of a diagnostic: largest_lattice_velocity, those of add_extremes(); where
-// cells are broken, the first of them for any name. Empty for other names.
+// Location of the extreme value of a diagnostic: largest_lattice_velocity or one of add_extremes(). If cells are
+// broken, the first of them for any name; empty for other names.
 std::optional<Location> location_in_fluid(const lbm::FluidSurvey& survey, const Units& units,
                                           const std::string& diagnostic);
 

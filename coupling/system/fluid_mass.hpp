@@ -20,11 +20,11 @@ inline ExcessMass excess_mass(const lbm::FluidSurvey& survey, const bodies::Hydr
   return {survey.totals.mass_deviation - rest.gradient.dot(survey.lever), survey.totals.cells};
 }
 
-// What the mass of the whole fluid has lost or gained to round-off, and to walls and solids that do not conserve it, is
-// looked for and given back every few hundred steps.
-inline constexpr std::int64_t steps_between_mass_looks = 200;
+// Steps between two corrections of the mass of the whole fluid, which round-off and non-conserving walls and solids
+// change.
+inline constexpr std::int64_t steps_between_mass_corrections = 200;
 
-inline bool looks_at_mass(std::int64_t step) { return step > 0 && step % steps_between_mass_looks == 0; }
+inline bool corrects_mass_at(std::int64_t step) { return step > 0 && step % steps_between_mass_corrections == 0; }
 
 // Adds a density to every fluid cell of this rank, to the populations at rest: no momentum. Returns what was added:
 // nothing where it would drown in the round-off of single storage, below 1e-8.

@@ -10,7 +10,7 @@
 
 namespace thalweg::coupling {
 
-// What sampling needs of a system. Fields are zero in cells of bodies.
+// Access of sampling to a system. Fields are zero in cells of bodies.
 struct SampleContext {
   Units units;
   std::function<std::int32_t(std::int32_t body)> grain_id;  // of a body of the cell map
@@ -29,12 +29,12 @@ FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context,
 template <typename Real>
 void visit_velocities(const lbm::Fluid<Real>& fluid, const Units& units, const FluidSource::VelocityVisitor& visit);
 
-// Of one owned cell; none where a body covers it.
+// State of one owned cell; none if a body covers it.
 template <typename Real>
 std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell);
 
-// What drives the fluid, and the force on the upper face in the step to come; reference: the density (rho - 1) whose
-// pressure is left out. Fills the slots at walls, as the next step will do again. Collective.
+// Driving force of the fluid, and the force on the upper face in the coming step; reference: rho - 1 that exerts no
+// force. Fills the slots at walls, as the next step will do again. Collective.
 template <typename Real>
 FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference);
 

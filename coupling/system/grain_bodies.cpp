@@ -1,6 +1,7 @@
 #include "coupling/system/grain_bodies.hpp"
 
 #include "bodies/mass_return.hpp"
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 #include "core/geometry/sphere.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
@@ -26,7 +27,8 @@ GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains
       units_(units),
       load_(load),
       light_load_{units.density, units.spacing},
-      with_stress_(with_stress) {}
+      with_stress_(with_stress),
+      sums_(with_stress) {}
 
 template <typename Real>
 void GrainBodies<Real>::begin_where_grains_are() {
@@ -84,12 +86,12 @@ void GrainBodies<Real>::synchronise_slots() {
   slot_.resize(store.total());
   for (std::size_t g = 0; g < store.total(); ++g) {
     slot_[g] = bodies_.slot_of(store.id[g]);
-    if (slot_[g] >= 0) present[static_cast<std::size_t>(slot_[g])] = 1;
+    if (slot_[g] != bodies::BodySlot::none) present[index_of(slot_[g])] = 1;
   }
   for (std::size_t slot = 0; slot < present.size(); ++slot)
-    if (!present[slot] && bodies_.mapped()[slot].id >= 0) bodies_.remove(static_cast<int>(slot));
+    if (!present[slot] && bodies_.mapped()[slot].id >= 0) bodies_.remove(bodies::slot_at(slot));
   for (std::size_t g = 0; g < store.total(); ++g)
-    if (slot_[g] < 0)
+    if (slot_[g] == bodies::BodySlot::none)
       slot_[g] = bodies_.add(store.id[g], store.radius[g] / units_.spacing, store.clump[g],
                              lattice_position(exchange_of(g).link_position()));
 }
@@ -97,6 +99,7 @@ void GrainBodies<Real>::synchronise_slots() {
 template <typename Real>
 void GrainBodies<Real>::update_motions() {
   const dem::GrainStore& store = grains_.store();
+  CHECK(slot_.size() == store.total());
   for (std::size_t g = 0; g < store.total(); ++g) {
     const GrainExchange<double> kept = exchange_of(g);
     bodies_.move(slot_[g], {lattice_position(store.position[g]), store.velocity[g] / units_.velocity(),
@@ -123,32 +126,24 @@ void GrainBodies<Real>::update_cells() {
 template <typename Real>
 void GrainBodies<Real>::collect() {
   const std::size_t count = grains_.store().total();
-  const int width = sums_per_grain();
-  exchanged_.resize(static_cast<std::size_t>(width) * count);
-  std::vector<std::array<std::int64_t, occluded_sums>> hidden;
-  if (with_stress_) hidden = bodies_.occluded_by_solids();
+  CHECK(slot_.size() == count);
+  sums_.resize(count);
+  std::vector<std::array<std::int64_t, 3>> occluded;
+  if (with_stress_) occluded = bodies_.occluded_by_solids();
   for (std::size_t g = 0; g < count; ++g) {
     const bodies::LinkBody& body = bodies_.body(slot_[g]);
-    const std::int64_t sums[8] = {body.force.x,  body.force.y,  body.force.z, body.torque.x,
-                                  body.torque.y, body.torque.z, body.mass,    body.pressure};
-    auto into = std::copy(sums, sums + 8, exchanged_.begin() + static_cast<std::ptrdiff_t>(width * g));
-    const bodies::LinkSums& link_sums = bodies_.link_sums(slot_[g]);
-    into = std::copy(link_sums.sums.begin(), link_sums.sums.end(), into);
-    if (with_stress_) {
-      const FixedTensor& moments = bodies_.moments(slot_[g]);
-      into = std::copy(moments.sums.begin(), moments.sums.end(), into);
-      std::copy_n(hidden[static_cast<std::size_t>(slot_[g])].begin(), occluded_sums, into);
-    }
+    sums_.set(g, GrainSums{body.force, body.torque, body.mass, body.pressure, bodies_.link_sums(slot_[g])});
+    if (with_stress_) sums_.set(g, StressSums{bodies_.moments(slot_[g]), occluded[index_of(slot_[g])]});
   }
-  grains_.add_ghost_values(exchanged_, width);
+  grains_.add_ghost_values(sums_.values(), sums_.width());
 }
 
 template <typename Real>
 void GrainBodies<Real>::apply() {
   for (std::size_t g = 0; g < grains_.store().owned; ++g) {
-    const std::int64_t* sums = &exchanged_[sums_per_grain() * g];
-    const Vec3 force = FixedVec3{sums[0], sums[1], sums[2]}.to_vec3() * units_.force();
-    const Vec3 torque = FixedVec3{sums[3], sums[4], sums[5]}.to_vec3() * units_.torque();
+    const GrainSums sums = sums_.of(g);
+    const Vec3 force = sums.force.to_vec3() * units_.force();
+    const Vec3 torque = sums.torque.to_vec3() * units_.torque();
     const GrainExchange<double> kept = exchange_of(g);
     set_load(g, force, torque);
     kept.earlier_force() = kept.last_force();
@@ -160,29 +155,21 @@ void GrainBodies<Real>::apply() {
   }
 }
 
-template <typename Real>
-bodies::LinkSums GrainBodies<Real>::link_sums_of(std::size_t grain) const {
-  bodies::LinkSums links;
-  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums - bodies::LinkSums::size], bodies::LinkSums::size,
-              links.sums.begin());
-  return links;
-}
-
-// Of a grain, or of all members of a clump, in slots from `first` on.
+// Settles the mass of a grain, or of a clump whose members are in the slots from `first` on.
 template <typename Real>
 void GrainBodies<Real>::settle_mass(std::size_t first, std::size_t count) {
   bodies::LinkSums links;
   std::int64_t sum = 0;
   double came_back = 0.0;
   for (std::size_t g = first; g < first + count; ++g) {
-    const bodies::LinkSums of_grain = link_sums_of(g);
+    const GrainSums sums = sums_.of(g);
     const bodies::LinkBody& body = bodies_.body(slot_[g]);
-    const std::int64_t* sums = &exchanged_[sums_per_grain() * g + 6];
-    links += of_grain;
-    sum = exact_sum(sum, sums[0]);
-    came_back += bodies::MassReturn{body.returned, body.returned_slope}.mass(of_grain);
+    links += sums.links;
+    sum = exact_sum(sum, sums.mass);
+    came_back += bodies::MassReturn{body.returned, body.returned_slope}.mass(sums.links);
     // A grain without links has no fluid around it: what was there last stays.
-    if (of_grain.weight() > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums[1]) / of_grain.weight();
+    const double weight = sums.links.weight();
+    if (weight > 0.0) exchange_of(g).surrounding() = LatticeFixed::to_double(sums.pressure) / weight;
   }
   const GrainExchange<double> kept = exchange_of(first);
   bodies::MassDebt debt{kept.owed_mass(), kept.mean_loss(), kept.wanted_return()};
@@ -222,7 +209,7 @@ double GrainBodies<Real>::mass_owed() const {
 // units (bodies/map/occluded_patches.hpp).
 template <typename Real>
 Mat3 GrainBodies<Real>::moment_occluded_by_solids(std::size_t grain) const {
-  const std::int64_t* sums = &exchanged_[sums_per_grain() * grain + plain_sums + moment_sums];
+  const std::array<std::int64_t, 3> sums = sums_.stress_of(grain).occluded_by_solids;
   const Vec3 h = Vec3(static_cast<double>(sums[0]), static_cast<double>(sums[1]), static_cast<double>(sums[2])) / 36.0;
   if (h.isZero(0.0)) return Mat3::Zero();
   const double excess = exchange_of(grain).surrounding() - bodies_.reference_density();
@@ -234,9 +221,8 @@ Mat3 GrainBodies<Real>::moment_occluded_by_solids(std::size_t grain) const {
 template <typename Real>
 void GrainBodies<Real>::apply_stress(std::size_t grain) {
   const double volume = Sphere{grains_.store().radius[grain]}.volume();
-  FixedTensor sums;
-  std::copy_n(&exchanged_[sums_per_grain() * grain + plain_sums], sums.sums.size(), sums.sums.begin());
-  const Mat3 stress = (sums.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
+  const Mat3 stress =
+      (sums_.stress_of(grain).moments.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
   const GrainExchange<double> kept = exchange_of(grain);
   kept.mean_stress() = 0.5 * (stress + kept.last_stress());
   kept.last_stress() = stress;
@@ -249,7 +235,7 @@ void GrainBodies<Real>::show_stresses() {
   for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
 }
 
-// From this exchange and those before it. Of a light grain, the store has what the grain got in the step before.
+// Averages this exchange and those before it. For a light grain, the store holds the load of the step before.
 template <typename Real>
 void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque) {
   dem::GrainStore& store = grains_.store();

@@ -6,6 +6,7 @@
 #include "bodies/bodies.hpp"
 #include "core/base/units.hpp"
 #include "coupling/loads/grain_exchange.hpp"
+#include "coupling/loads/grain_sums.hpp"
 #include "coupling/loads/light_load.hpp"
 #include "coupling/loads/load_averaging.hpp"
 #include "dem/grain_dynamics.hpp"
@@ -32,7 +33,7 @@ public:
   void begin_where_grains_are();
   // The bodies of a start, where cells have never been fluid. Removes all spheres first.
   void place_at_start();
-  // Of grains without an exchange yet: rho - rho_rest around them.
+  // Sets rho - rho_rest around grains without an exchange yet.
   void set_surroundings(double deviation);
   // After grains have been taken from a run on another lattice, what they keep in its units means nothing.
   void forget_lattice_units();
@@ -62,10 +63,6 @@ private:
   void show_stresses();
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
-  bodies::LinkSums link_sums_of(std::size_t grain) const;
-  // Of a grain: force, torque, mass, pressure, LinkSums; where measured, moments and what solids hide.
-  static constexpr int plain_sums = 8 + bodies::LinkSums::size, moment_sums = 9, occluded_sums = 3;
-  int sums_per_grain() const { return plain_sums + (with_stress_ ? moment_sums + occluded_sums : 0); }
   Mat3 moment_occluded_by_solids(std::size_t grain) const;
 
   MPI_Comm communicator_;
@@ -76,8 +73,8 @@ private:
   LoadAveraging load_;
   LightLoad light_load_;
   bool with_stress_;
-  std::vector<int> slot_;                // of each grain of the store
-  std::vector<std::int64_t> exchanged_;  // sums of each grain of the store
+  std::vector<bodies::BodySlot> slot_;  // of each grain of the store
+  GrainSumRows sums_;                   // of each grain of the store
   std::vector<Mat3> stresses_;
 };
 

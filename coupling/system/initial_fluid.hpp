@@ -1,4 +1,4 @@
-// How a case describes the fluid at the start, and the state that follows from it.
+// Keys of the fluid at the start, and the state that follows from them.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -29,14 +29,14 @@ struct LogProfileKeys {
   bool operator==(const LogProfileKeys&) const = default;
 };
 
-// At rest up to `lower`, from there rising in proportion to the height up to `velocity` at `upper`, constant above.
+// Velocity profile: zero up to `lower`, linear up to `velocity` at `upper`, constant above.
 struct LinearProfileKeys {
   double lower = 0.0, upper = 0.0;  // m above the bottom
   Vec3 velocity = Vec3::Zero();     // m/s
   bool operator==(const LinearProfileKeys&) const = default;
 };
 
-// At most one; none: at rest.
+// Initial states, of which a case has at most one; none: at rest.
 struct InitialFluidKeys {
   std::optional<Vec3> uniform;  // m/s
   std::optional<LinearProfileKeys> linear_profile;

@@ -75,14 +75,14 @@ void LatticeSystem<Real>::name_phases() {
   }
 }
 
-// Of the fluid and of the grains, in the step of this number, from 1.
+// Sets the gravity of fluid and grains in the step of this number, from 1.
 template <typename Real>
 void LatticeSystem<Real>::set_gravity_of(std::int64_t step) {
   set_gravity(fluid_, parameters_, step);
   if (grains_ && parameters_.ramp > 0.0) grains_->set_body_force_factor(gravity_factor(parameters_, step));
 }
 
-// N/m^3: the pressure gradient that holds the mean velocity, as the last step had it on the fluid.
+// Pressure gradient that holds the mean velocity, as in the last step, N/m^3.
 template <typename Real>
 Vec3 LatticeSystem<Real>::held_force_on_grains() const {
   Vec3 force = Vec3::Zero();
@@ -114,7 +114,7 @@ void LatticeSystem<Real>::advance() {
   keep_mass();
 }
 
-// Of solids that move, where the last step had them.
+// Restores the positions that moving solids had in the last step.
 template <typename Real>
 void LatticeSystem<Real>::place_solids_again() {
   if (!solid_bodies_.any_moves() || step_ == 0) return;
@@ -194,8 +194,7 @@ void LatticeSystem<Real>::advance_grains() {
   grains_->refresh_ghosts();
 }
 
-// At the start of a run, from whatever state: the mass that is there, and what the grains bring along as owed, is to be
-// kept.
+// Starts the budget of a run: the present mass, and what imported grains owe, is to be conserved.
 template <typename Real>
 void LatticeSystem<Real>::open_mass_budget() {
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
@@ -208,11 +207,11 @@ void LatticeSystem<Real>::open_mass_budget() {
   grain_bodies_->set_surroundings(excess.mean());
 }
 
-// What no body owes: round-off, walls and solids that do not conserve mass. At the end of a step, so that a checkpoint
-// has it.
+// Corrects mass errors that no body owes: round-off, and walls and solids that do not conserve mass. Called at the end
+// of a step, so that checkpoints contain it.
 template <typename Real>
 void LatticeSystem<Real>::keep_mass() {
-  if (!has_bodies() || !looks_at_mass(step_)) return;
+  if (!has_bodies() || !corrects_mass_at(step_)) return;
   const bool is_closed = closed(parameters_.faces);
   if (!grains_ && !is_closed) return;
   const ExcessMass excess = excess_mass(survey_of(fluid_), rest_);
@@ -315,7 +314,7 @@ void LatticeSystem<Real>::add_solid_diagnostics(std::vector<Diagnostic>& diagnos
     add_vector(dem::solid_force_diagnostic(s), "N", of_grains[grains_->walls().size() + s], diagnostics);
 }
 
-// Of the grains at the end of the step; of the fluid what the walls take from it in the step to come.
+// Forces of the grains at the end of the step, and of the fluid in the coming step.
 template <typename Real>
 void LatticeSystem<Real>::add_wall_forces(std::vector<Diagnostic>& diagnostics) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
@@ -405,13 +404,13 @@ template <typename Real>
 void LatticeSystem<Real>::import_fluid(ArchiveReader& archive, double spacing) {
   const double density_unit = coupling::import_fluid(fluid_, archive, spacing, parameters_);
   open_mass_budget();
-  // As the run that is taken over would go on.
+  // Keeps the reference density of the imported run.
   if (grains_ && archive.has("mass/reference"))
     bodies_.set_reference_density(density_unit * archive.real_attribute("mass/reference"));
 }
 
-// Grains of a resolved run keep the places their links were cut at, others begin where they are. What is in lattice
-// units begins anew on another lattice.
+// Grains of a resolved run keep their link positions, others begin where they are. Values in lattice units are reset if
+// the lattice differs.
 template <typename Real>
 void LatticeSystem<Real>::import_grains(ArchiveReader& archive, double spacing) {
   bodies_.remove_all();

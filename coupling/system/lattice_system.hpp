@@ -1,5 +1,5 @@
-// A lattice fluid with what is in it: solids that stand still or move as they are told, grains, or neither. One step is
-// one lattice step and, with grains, its DEM sub-steps.
+// A lattice fluid alone, or with solids (at rest or with prescribed motion), grains, or both. One step is one lattice
+// step and, with grains, its DEM sub-steps.
 #pragma once
 
 #include "bodies/bodies.hpp"
@@ -21,7 +21,7 @@ namespace thalweg::coupling {
 struct LatticeParameters : FluidParameters {
   LoadAveraging load = LoadAveraging::extrapolated;  // of grains
   int sub_steps = 50;                                // DEM steps per lattice step
-  bool wall_forces = false;                          // whether the diagnostics include the forces on walls
+  bool wall_forces = false;                          // the diagnostics include the forces on walls
   std::vector<dem::PrescribedMotion> solid_motions;  // SI, of the first solids; the others stand still
 };
 
@@ -40,7 +40,7 @@ public:
     return GrainBodies<Real>::attached_width(parameters.bodies.moments);
   }
 
-  // How far beyond a block its grains must be known for the map, as a distance from the grain's centre (m).
+  // Distance (m) beyond a block within which the centres of grains must be known for the map.
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
 
   void advance() override;
@@ -85,7 +85,6 @@ private:
   bool any_moves() const { return grains_ || solid_bodies_.any_moves(); }
   void place_solids_again();
   void name_phases();
-  void place_grains();
   void move_bodies();
   void exchange_behind_links();
   void record_momentum_budget();

@@ -1,5 +1,6 @@
 #include "coupling/system/solid_bodies.hpp"
 
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 #include "core/state/whole_dataset.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
@@ -28,11 +29,13 @@ template <typename Real>
 SolidBodies<Real>::SolidBodies(MPI_Comm communicator, bodies::Bodies<Real>& bodies, const Units& units,
                                const std::vector<dem::PrescribedMotion>& motions)
     : communicator_(communicator), bodies_(bodies), units_(units) {
+  CHECK(motions.size() <= static_cast<std::size_t>(bodies.solids()));
   for (std::size_t s = 0; s < motions.size(); ++s) {
     const dem::PrescribedMotion& motion = motions[s];
     if (!motion.moves()) continue;
     const int solid = static_cast<int>(s);
-    const Vec3 pivot = motion.turns() ? Vec3(motion.centre / units.spacing) : bodies.body(solid).centre;
+    const Vec3 pivot =
+        motion.turns() ? Vec3(motion.centre / units.spacing) : bodies.body(bodies::slot_of_solid(solid)).centre;
     moving_.push_back({solid, motion, pivot, {}, {}});
   }
 }
@@ -55,8 +58,8 @@ void SolidBodies<Real>::settle_masses() {
   constexpr std::size_t width = 1 + bodies::LinkSums::size;
   std::vector<std::int64_t> sums;
   for (const Moving& m : moving_) {
-    const bodies::LinkSums& links = bodies_.link_sums(m.solid);
-    sums.push_back(bodies_.body(m.solid).mass);
+    const bodies::LinkSums& links = bodies_.link_sums(bodies::slot_of_solid(m.solid));
+    sums.push_back(bodies_.body(bodies::slot_of_solid(m.solid)).mass);
     sums.insert(sums.end(), links.sums.begin(), links.sums.end());
   }
   sums = over_ranks(communicator_, std::move(sums));
@@ -79,8 +82,8 @@ template <typename Real>
 std::vector<std::int64_t> SolidBodies<Real>::sums() const {
   if (!loaded_.empty()) return loaded_;
   std::vector<std::int64_t> sums;
-  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(s).force, sums);
-  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(s).torque, sums);
+  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(bodies::slot_of_solid(s)).force, sums);
+  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(bodies::slot_of_solid(s)).torque, sums);
   return over_ranks(communicator_, std::move(sums));
 }
 

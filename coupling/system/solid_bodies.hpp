@@ -1,5 +1,5 @@
-// Solids in the fluid: where those that move are in each step, what they owe the fluid, and what the fluid exerts on
-// every solid, as reports and checkpoints have it.
+// Solids in the fluid: the motion of those that move, the mass they owe the fluid, and the loads on every solid for
+// reports and checkpoints.
 #pragma once
 
 #include "bodies/bodies.hpp"
@@ -26,11 +26,11 @@ public:
 
   // Moves those that move to where they are at a time (s), between begin_step() and settle() of the bodies.
   void move(double time);
-  // At the end of a step: what those that move have taken from the fluid comes back in the next ones. Collective.
+  // Settles, at the end of a step, the mass that moving solids have taken; it comes back in the next steps. Collective.
   void settle_masses();
   double mass_owed() const;  // to the fluid, lattice units; the same on every rank
 
-  // What the fluid exerted on every solid in the last step, lattice units. Collective.
+  // Force and torque of the fluid on every solid in the last step, lattice units. Collective.
   struct Loads {
     std::vector<Vec3> forces, torques;  // torques: about the point of the axis; zero of solids that do not turn
   };

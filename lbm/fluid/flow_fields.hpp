@@ -1,4 +1,4 @@
-// What can be seen in a lattice fluid besides density and velocity. Lattice units.
+// Fields derived from the populations besides density and velocity. Lattice units.
 //
 // Velocity gradients, for vorticity w = curl u and Q = (W_ab W_ab - S_ab S_ab)/2 with S, W the symmetric and
 // antisymmetric parts of du_a/dx_b (Hunt, Wray and Moin 1988), are central differences of the velocity of the last
@@ -23,7 +23,7 @@ using Gradient = Eigen::Matrix3d;
 template <typename Real>
 GhostedField velocity_field(const Fluid<Real>& fluid, const Block& region);
 
-// At an owned fluid cell of the region of a velocity_field.
+// Gradient at an owned fluid cell of the region of a velocity_field.
 Gradient velocity_gradient(const GhostedField& velocity, int x, int y, int z);
 
 Vec3 vorticity(const Gradient& gradient);
@@ -44,7 +44,8 @@ struct MomentumFlux {
   Symmetric<double> viscous{}, subgrid{};  // stresses, positive in tension
 };
 
-// Of an owned fluid cell. What streams in must lie ready: exchange_halo(), apply_walls(), and the links of bodies.
+// Momentum flux of an owned fluid cell. The incoming populations must be ready: exchange_halo(), apply_walls(), and the
+// links of bodies.
 template <typename Real>
 MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell);
 template <typename Real>

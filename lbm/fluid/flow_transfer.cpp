@@ -71,7 +71,7 @@ public:
     for (FluidState& s : states_) s.velocity /= 1.0 + s.density_deviation;
   }
 
-  // At the centre of a cell of the fluid, by its global coordinates.
+  // State at the centre of a cell of the fluid, by its global coordinates.
   FluidState at(const Index3& cell) const {
     SourceAxis::Between between[3];
     for (std::size_t a = 0; a < 3; ++a) between[a] = axes_[a].between(cell[a]);

@@ -1,5 +1,6 @@
 #include "lbm/fluid/fluid.hpp"
 
+#include "core/base/check.hpp"
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
@@ -31,8 +32,8 @@ const CollisionParameters& checked(const CollisionParameters& parameters) {
   return parameters;
 }
 
-// Of this block's cells.
-WallPositions wall_places(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
+// Walls around this block's cells.
+WallPositions wall_positions(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
   WallPositions walls;
   for (int axis = 0; axis < 3; ++axis) {
     const auto is_wall = [&](bool high) {
@@ -55,7 +56,7 @@ Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, co
       parameters_(checked(parameters)),
       block_(decomposition.block_of(rank_of(communicator))),
       populations_(CellIndexing(block_.size(), pack_width<Real>())),
-      cells_(populations_.indexing(), wall_places(decomposition, block_, faces)),
+      cells_(populations_.indexing(), wall_positions(decomposition, block_, faces)),
       tiles_(block_.size(), D3Q19::directions * sizeof(Real) * populations_.indexing().row_stride()),
       walls_(decomposition, rank_of(communicator), populations_.indexing(), faces, parameters),
       halo_(decomposition, communicator, populations_, walls_) {
@@ -99,11 +100,18 @@ void Fluid<Real>::carry_force() {
 }
 
 template <typename Real>
+void Fluid<Real>::apply_walls() {
+  CHECK(!halo_.under_way());  // walls read the halo
+  walls_.apply(populations_, cells_);
+}
+
+template <typename Real>
 void Fluid<Real>::control_flow(const FlowTarget& target) {
+  CHECK(target.axis >= 0 && target.axis < 3);
   control_.emplace(target);
 }
 
-// The populations are still those of the last collision, which left the whole of its force in them.
+// The populations are post-collision and contain the whole force of that collision.
 template <typename Real>
 void Fluid<Real>::update_force() {
   const int axis = control_->target().axis;
@@ -122,7 +130,8 @@ std::array<Vec3, 6> Fluid<Real>::wall_forces(double reference, std::vector<Fixed
   return forces;
 }
 
-// All rows are swept: the populations lie in the other arrangement and carry the force of this collision.
+// Ends the step once all rows are swept: the populations are in the other arrangement and carry the force of this
+// collision.
 template <typename Real>
 void Fluid<Real>::end_step() {
   populations_.set_arrangement(populations_.arrangement() == Arrangement::swapped ? Arrangement::moved
@@ -131,7 +140,7 @@ void Fluid<Real>::end_step() {
   carry_force();
 }
 
-// Every row takes the same way through the sweep on every rank, because with shear rates it may round differently.
+// A row takes the same variant of the sweep on every rank: the one that stores shear rates may round differently.
 template <typename Real>
 void Fluid<Real>::sweep(int y, int z) {
   const RowShear<Real> shear{{shear_rows_[0].data(), shear_rows_[1].data(), shear_rows_[2].data()}};
@@ -147,6 +156,7 @@ void Fluid<Real>::sweep(int y, int z) {
 
 template <typename Real>
 void Fluid<Real>::stream_and_collide() {
+  CHECK(!halo_.under_way());
   if (control_) update_force();
   const Index3& n = indexing().size();
   for (int z = 0; z < n[2]; ++z)
@@ -157,6 +167,7 @@ void Fluid<Real>::stream_and_collide() {
 // The sweep follows one plane and one row behind.
 template <typename Real>
 void Fluid<Real>::stream_and_collide(const std::function<void(int)>& before_tile) {
+  CHECK(!halo_.under_way());
   if (control_) update_force();
   const int planes = tiles_.planes();
   for (int block = 0; block < tiles_.blocks(); ++block) {
@@ -195,8 +206,8 @@ void Fluid<Real>::advance_behind_halo() {
   end_step();
 }
 
-// Where rows end at another rank or at a wall, the halo is not hidden: sweeping the ends of all rows apart costs more
-// (measured: a fifth of the step) than the wait.
+// The halo does not overlap with the sweep if rows end at another rank or at a wall: sweeping the ends of all rows
+// separately costs more (measured: a fifth of the step) than the wait.
 template <typename Real>
 void Fluid<Real>::advance() {
   const bool whole_rows = decomposition_.layout()[0] == 1 && decomposition_.periodic()[0];
@@ -238,6 +249,7 @@ ArrayBox Fluid<Real>::array_box() const {
 
 template <typename Real>
 void Fluid<Real>::save(ArchiveWriter& archive) const {
+  CHECK(!halo_.under_way());
   const Index3& n = indexing().size();
   std::vector<Real> values(static_cast<std::size_t>(n[0]) * n[1] * n[2]);
   for (int i = 0; i < D3Q19::directions; ++i) {
@@ -253,6 +265,7 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
 
 template <typename Real>
 void Fluid<Real>::load_populations(ArchiveReader& archive) {
+  CHECK(!halo_.under_way());
   const Index3& n = indexing().size();
   const std::vector<std::uint64_t> saved = archive.shape("fluid/populations_00"), here = array_box().global_shape;
   if (saved != here)

@@ -50,7 +50,7 @@ public:
   // after load(), and then carry_force().
   void set_force(const Vec3& force);
   // The force density of the last collision: the populations carry half of it beyond rho u, whatever is set for the
-  // next one. Walls and all who take velocities from post-collision populations reckon with it.
+  // next one. Walls and readers of velocities from post-collision populations account for it.
   const Vec3& carried_force() const { return carried_force_; }
   // Declares the present force that of the last collision, for a state that was set up or loaded.
   void carry_force();
@@ -61,7 +61,7 @@ public:
   void start_halo_exchange() { halo_.start(); }
   void finish_halo_exchange() { halo_.finish(); }
   void exchange_halo();
-  void apply_walls() { walls_.apply(populations_, cells_); }
+  void apply_walls();
   // Sweep all rows. before_tile: called with every tile of tiles() in order, before any row is swept that touches the
   // tile's rows or a neighbour of them.
   void stream_and_collide();

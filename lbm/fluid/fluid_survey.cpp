@@ -24,7 +24,7 @@ struct CellPack {
   Mask fluid, broken;
 };
 
-// What a stretch of a row adds up to, lane by lane.
+// Sums over a stretch of a row, lane by lane.
 struct Lanes {
   Pack mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};  // multiples of 2^-36
   Pack x_sum = 0.0, fluid = 0.0, fast = 0.0, broken = 0.0;

@@ -1,4 +1,4 @@
-// One look at every fluid cell of the domain: sums, extremes and where they are, in a single vectorised pass. Lattice
+// Survey of every fluid cell of the domain in a single vectorised pass: sums, extremes and their locations. Lattice
 // units.
 //
 // Of each cell, from its post-collision populations f_i (stored as f_i - w_i) and the force density F, in double

@@ -39,7 +39,7 @@ Halo<Real>::Halo(const Decomposition& decomposition, MPI_Comm communicator, Popu
       block_(decomposition.block_of(rank_of(communicator))),
       coordinates_(decomposition.coordinates_of(rank_of(communicator))) {
   const int me = rank_of(communicator);
-  // What is sent towards d arrives from -d: both lists run over the same d.
+  // A message sent towards d arrives from -d: both lists run over the same d.
   for (const Index3& towards : neighbour_offsets()) {
     const int to = decomposition.rank_at(plus(coordinates_, towards));
     const int from = decomposition.rank_at(plus(coordinates_, minus(towards)));
@@ -83,7 +83,7 @@ void Halo<Real>::add_neighbour(int rank, const Index3& towards, bool sending) {
         begin[a] = sending ? (towards[a] > 0 ? n[a] - 1 : 0) : (towards[a] > 0 ? -1 : n[a]);
         end[a] = begin[a] + 1;
       } else {
-        // What also leaves sideways goes to the edge neighbour, unless a wall is there, which wants to reflect it.
+        // Populations that also leave sideways go to the edge neighbour, unless a wall there reflects them.
         begin[a] = c < 0 && !walls_.present(a, false) ? 1 : 0;
         end[a] = c > 0 && !walls_.present(a, true) ? n[a] - 1 : n[a];
       }

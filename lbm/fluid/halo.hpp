@@ -22,6 +22,7 @@ public:
 
   void start();   // packs and sends
   void finish();  // waits and unpacks
+  bool under_way() const { return exchange_.under_way(); }
 
 private:
   // count Reals, stride apart; where they are in the swapped and in the moved arrangement.

@@ -1,5 +1,6 @@
 #include "lbm/fluid/mean_momentum.hpp"
 
+#include "core/base/check.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
 #include "lbm/fluid/fluid_packs.hpp"
 #include "lbm/fluid/fluid_survey.hpp"
@@ -89,6 +90,7 @@ private:
 
 template <typename Real>
 double mean_momentum(const Fluid<Real>& fluid, int axis) {
+  CHECK(axis >= 0 && axis < 3);
   return AxisMomentum<Real>(fluid, axis).mean();
 }
 

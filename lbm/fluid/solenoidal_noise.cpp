@@ -12,7 +12,7 @@ namespace {
 
 constexpr int longest_to_shortest = 4, fewest_cells_a_wave = 8;
 
-// What the random numbers of a mode are for.
+// Purposes of the random numbers of a mode.
 enum Draw : std::uint64_t { number, sign = 3, phase = 6, polarisation };
 
 // A vector of length one across k, turned at random about it.

@@ -1,7 +1,8 @@
-// Which cells are fluid and which are covered by a body, which packs of a row hold any fluid at all, and which cells
-// are beside bodies or in gaps.
+// Map of the cells: fluid or covered by a body, beside bodies, in gaps, and the number of fluid cells in each pack of a
+// row.
 #pragma once
 
+#include "core/base/check.hpp"
 #include "lbm/lattice/populations.hpp"
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 
 namespace thalweg::lbm {
 
-// Where walls are, in local coordinates: cells below `lower` and from `upper` on are behind one. No walls by default.
+// Positions of walls in local coordinates: cells below `lower` and from `upper` on are behind one. No walls by default.
 struct WallPositions {
   Index3 lower{none_below, none_below, none_below}, upper{none_above, none_above, none_above};
   static constexpr int none_below = std::numeric_limits<int>::min() / 2;
@@ -31,6 +32,7 @@ public:
         fluid_in_pack_(static_cast<std::size_t>(indexing.packs_per_row()) * indexing.size()[1] * indexing.size()[2]),
         beside_bodies_(fluid_in_pack_.size()),
         in_gaps_(fluid_in_pack_.size()) {
+    CHECK(indexing.pack() <= 16);  // a bit for each cell in the masks of packs
     const int width = indexing.pack(), nx = indexing.size()[0];
     for (std::size_t p = 0; p < fluid_in_pack_.size(); ++p) {
       const int first = static_cast<int>(p) % indexing.packs_per_row() * width;
@@ -42,7 +44,7 @@ public:
   bool is_fluid(std::ptrdiff_t cell) const { return body_[cell] == fluid; }
   std::int32_t body(std::ptrdiff_t cell) const { return body_[cell]; }
   const std::int32_t* bodies() const { return body_.data(); }
-  // Whether a cell, in memory or not, is beyond a wall.
+  // True if a cell, in memory or not, is beyond a wall.
   bool is_beyond_wall(const Index3& cell) const {
     for (int a = 0; a < 3; ++a)
       if (cell[a] < walls_.lower[a] || cell[a] >= walls_.upper[a]) return true;
@@ -51,6 +53,7 @@ public:
 
   // Gives a cell (local coordinates; owned or ghost) to a body, or back to the fluid.
   void assign(int x, int y, int z, std::int32_t body) {
+    CHECK(indexing_.in_memory({x, y, z}));
     std::int32_t& now = body_[indexing_.index(x, y, z)];
     const bool changes = (now == fluid) != (body == fluid);
     now = body;
@@ -60,29 +63,29 @@ public:
       count = static_cast<std::uint8_t>(count + (body == fluid ? 1 : -1));
     }
     for (int i = 1; i < D3Q19::directions; ++i)
-      look_around({x + D3Q19::c[i][0], y + D3Q19::c[i][1], z + D3Q19::c[i][2]});
+      update_neighbourhood({x + D3Q19::c[i][0], y + D3Q19::c[i][1], z + D3Q19::c[i][2]});
   }
 
   // Number of fluid cells in each pack of an owned row.
   const std::uint8_t* fluid_in_packs(int y, int z) const { return fluid_in_pack_.data() + pack_of(0, y, z); }
-  // For each pack of an owned row a bit for each cell, 1 where one of its 18 neighbours is covered.
+  // Bits of the cells in each pack of an owned row: 1 where one of the 18 neighbours is covered.
   const std::uint16_t* beside_bodies(int y, int z) const { return beside_bodies_.data() + pack_of(0, y, z); }
 
-  // The same, 1 where a cell is in a gap: two neighbours that are opposite are covered, or one is and a wall is within
-  // three cells on the other side. (Bodies are known from cell to cell, walls however far they are.)
+  // Bits likewise: 1 where a cell is in a gap: two neighbours that are opposite are covered, or one is and a wall is
+  // within three cells on the other side. (Bodies are known from cell to cell, walls however far they are.)
   const std::uint16_t* in_gaps(int y, int z) const { return in_gaps_.data() + pack_of(0, y, z); }
 
 private:
   static constexpr int widest_gap_at_wall = 3;  // cells
 
-  // Whether a wall is this many steps of direction i away, or nearer.
+  // True if a wall is at most this many steps of direction i away.
   bool meets_wall(const Index3& cell, int i, int steps) const {
     return is_beyond_wall(
         {cell[0] + steps * D3Q19::c[i][0], cell[1] + steps * D3Q19::c[i][1], cell[2] + steps * D3Q19::c[i][2]});
   }
 
   // Brings the bits of a cell up to date, if it is owned.
-  void look_around(const Index3& at) {
+  void update_neighbourhood(const Index3& at) {
     if (!indexing_.owned(at[0], at[1], at[2])) return;
     const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
     const auto covered = [&](int i) { return !is_fluid(cell + indexing_.offset(i)); };

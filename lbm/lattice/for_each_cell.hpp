@@ -14,13 +14,13 @@ void for_each_cell(const CellIndexing& indexing, const Block& part, Visit visit)
       for (int x = part.lower[0]; x < part.upper[0]; ++x) visit(indexing.index(x, y, z), Index3{x, y, z});
 }
 
-// For every owned cell.
+// Visits every owned cell.
 template <typename Visit>
 void for_each_cell(const CellIndexing& indexing, Visit visit) {
   for_each_cell(indexing, Block{{0, 0, 0}, indexing.size()}, visit);
 }
 
-// For those that no body covers.
+// Visits every owned cell that no body covers.
 template <typename Visit>
 void for_each_fluid_cell(const CellMap& cells, Visit visit) {
   for_each_cell(cells.indexing(), [&](std::ptrdiff_t cell, const Index3& at) {

@@ -1,10 +1,13 @@
 #include "lbm/lattice/populations.hpp"
 
+#include "core/base/check.hpp"
+
 namespace thalweg::lbm {
 
 CellIndexing::CellIndexing(const Index3& size, int pack) : size_(size), pack_(pack) {
-  // One pack before the row (its last cell is the ghost), the owned cells in whole packs, one pack after for the
-  // neighbours that the last pack reaches.
+  CHECK(pack > 0 && size[0] > 0 && size[1] > 0 && size[2] > 0);
+  // A row is one pack (its last cell is the ghost), the owned cells in whole packs, and one pack for the neighbours
+  // that the last one reaches.
   row_stride_ = static_cast<std::ptrdiff_t>(packs_per_row() + 2) * pack;
   plane_stride_ = row_stride_ * (size[1] + 2);
   for (int i = 0; i < D3Q19::directions; ++i)

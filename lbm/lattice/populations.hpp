@@ -1,10 +1,10 @@
 // The lattice in memory: one copy of the populations, streamed in place (the AA pattern of Bailey et al. 2009).
 //
 // Structure of arrays: a plane of cells per direction, x contiguous, rows padded to whole SIMD packs, one ghost cell
-// around the block. Real is the storage type; what is stored is f_i - w_i. With S[i][x] the storage, f^c the
-// post-collision populations and i' the opposite of i, the state between two steps is one of
-//   swapped:  S[i'][x]     = f_i^c(x)      (left by a sweep that stays in its own cells)
-//   moved:    S[i][x + c_i] = f_i^c(x)     (left by a sweep that pulls from and pushes to the neighbours)
+// around the block. Real is the storage type of f_i - w_i. With S[i][x] the storage, f^c the post-collision populations
+// and i' the opposite of i, the state between two steps is one of
+//   swapped:  S[i'][x]     = f_i^c(x)      (after an even step of the pattern, which stays in its own cells)
+//   moved:    S[i][x + c_i] = f_i^c(x)     (after an odd step, which pulls from and pushes to the neighbours)
 // Either way the next sweep reads and writes exactly the 19 slots that belong to a cell, so cells may be swept in any
 // order, and solid cells may be swept or skipped at will: their output is never read.
 #pragma once
@@ -20,9 +20,9 @@
 
 namespace thalweg::lbm {
 
-enum class Arrangement { swapped, moved };
+enum class Arrangement { swapped, moved };  // after an even or an odd step
 
-// Where a cell of the block is in memory; shared by every array that runs parallel to the populations.
+// Indices of the cells of a block in memory, shared by all arrays parallel to the populations.
 class CellIndexing {
 public:
   // pack: SIMD width in cells; rows start on a pack boundary.
@@ -32,7 +32,7 @@ public:
   int pack() const { return pack_; }
   int packs_per_row() const { return (size_[0] + pack_ - 1) / pack_; }
   std::ptrdiff_t row_stride() const { return row_stride_; }
-  // From a cell to the next along an axis.
+  // Distance from a cell to the next along an axis.
   std::ptrdiff_t stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? row_stride_ : plane_stride_; }
   std::ptrdiff_t plane_stride() const { return plane_stride_; }
   std::size_t count() const {
@@ -76,8 +76,8 @@ public:
   Real& post_collision(int i, std::ptrdiff_t cell) { return *slot_of(i, cell); }
   Real post_collision(int i, std::ptrdiff_t cell) const { return *const_cast<Populations*>(this)->slot_of(i, cell); }
 
-  // For passes over many cells: the slots of f_i^c of the cell with index 0, by direction, to which the index of a cell
-  // is added. Valid until the arrangement changes.
+  // Slots of f_i^c of the cell with index 0, by direction, to which passes over many cells add the index of a cell.
+  // Valid until the arrangement changes.
   std::array<const Real*, D3Q19::directions> sent() const {
     std::array<const Real*, D3Q19::directions> slots;
     for (int i = 0; i < D3Q19::directions; ++i)

@@ -21,7 +21,7 @@ enum class FaceType {
   pressure_outlet        // fluid leaves (or enters) at a given density
 };
 
-// How a face gives back the populations that come to it.
+// Rule by which a face reflects the populations that reach it.
 enum class Reflection {
   bounce_back,          // reversed
   specular,             // mirrored
@@ -71,8 +71,8 @@ constexpr bool is_open(FaceType type) { return traits_of(type).is_open; }
 // tangent of u+ = ln(y+)/0.41 + 5 at y+ = 10.8 taken to the wall, gives 8.36.
 constexpr double derived_slip_coefficient = 8.36;
 
-// The same tangent taken at the centre of the first cell, y_plus away from the wall in wall units, where that is
-// further out than 10.8 and the velocity the cell knows lies on a flatter part of the profile.
+// Coefficient from the tangent at the centre of the first cell, y_plus away from the wall in wall units, if that is
+// beyond 10.8, where the profile is flatter.
 inline double slip_coefficient_at(double y_plus) {
   return y_plus > 10.8 ? logarithmic_law(y_plus) - 1.0 / karman_constant : derived_slip_coefficient;
 }

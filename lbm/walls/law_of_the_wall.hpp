@@ -63,7 +63,7 @@ private:
     double value, first, second, third;  // in the share of the interval
   };
 
-  // With y = nu = 1, where u_tau = y+.
+  // Exact ratio with y = nu = 1, so that u_tau = y+.
   static double exact(double reynolds) {
     const double y_plus = friction_velocity(reynolds, 1.0, 1.0);
     return y_plus * y_plus / reynolds;
@@ -73,7 +73,7 @@ private:
     const double y_plus = friction_velocity(reynolds, 1.0, 1.0), u_plus = logarithmic_law(y_plus);
     return y_plus / reynolds * (2.0 / (u_plus + 1.0 / karman_constant) - y_plus / reynolds);
   }
-  // Of the same values and slopes as the law at both ends.
+  // Adds a cubic with the values and slopes of the law at both ends.
   void add_interval(double low, double width) {
     const double a = exact(low), b = exact(low + width);
     const double da = width * slope(low), db = width * slope(low + width);

@@ -1,4 +1,5 @@
 // Walls::forces: what the walls take from the fluid in the exchange that the next sweep makes.
+#include "core/base/check.hpp"
 #include "lbm/lattice/face_axes.hpp"
 #include "lbm/walls/walls.hpp"
 
@@ -6,8 +7,7 @@
 
 namespace thalweg::lbm {
 
-// A population that comes out of the edge of two faces is counted with the one that decides about it, where both do
-// with the first.
+// A population out of the edge of two faces counts for the face whose rule it obeys, or for the first if both apply.
 template <typename Real>
 int Walls<Real>::face_of_population(int face, int o, const Index3& at) const {
   const int axis = face / 2;
@@ -29,6 +29,7 @@ std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& population
                                              double reference, std::vector<FixedVec3>* sides_by_height) const {
   std::array<FixedVec3, 6> sums{};
   const Index3& n = indexing_.size();
+  CHECK(!sides_by_height || sides_by_height->size() == static_cast<std::size_t>(2 * n[2] + 1));
   for (int face = 0; face < 6; ++face) {
     if (!present_[face]) continue;
     const int axis = face / 2, inward = face % 2 == 0 ? 1 : -1;

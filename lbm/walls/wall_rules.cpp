@@ -78,7 +78,7 @@ Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::
                                (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
 }
 
-// The common walls, in loops over plain arrays.
+// Applies a reflection in loops over plain arrays.
 template <typename Real>
 void Walls<Real>::reflect_row(Populations<Real>& populations, const CellMap& cells, const RowPart& part,
                               Reflection reflection) const {
@@ -120,7 +120,7 @@ void Walls<Real>::reflect_row(Populations<Real>& populations, const CellMap& cel
   }
 }
 
-// The other face if this population comes out of an edge, or -1.
+// The other face of the edge that this population comes out of, or -1.
 template <typename Real>
 int Walls<Real>::edge_face(const IncomingDirection& e, int u, int v) const {
   if (e.cu > 0 && u == 0 && present(e.u_axis, false)) return face_of(e.u_axis, false);
@@ -130,7 +130,7 @@ int Walls<Real>::edge_face(const IncomingDirection& e, int u, int v) const {
   return -1;
 }
 
-// What a cell gets out of the edge with another face.
+// Incoming population of a cell at the edge with another face.
 template <typename Real>
 Real Walls<Real>::from_edge(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell, int other) const {
@@ -143,7 +143,7 @@ Real Walls<Real>::from_edge(const Populations<Real>& populations, const Incoming
   return with_velocity(populations, incoming.direction, cell, velocity);
 }
 
-// What a cell away from edges gets from a wall that does not merely reflect.
+// Incoming population of a cell away from edges, at a face that does not reflect.
 template <typename Real>
 Real Walls<Real>::from_wall(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell) const {
@@ -152,7 +152,7 @@ Real Walls<Real>::from_wall(const Populations<Real>& populations, const Incoming
                                            : at_pressure(populations, incoming.direction, cell, wall.density_deviation);
 }
 
-// Edges with the faces at the ends of the row, or with the face along the whole of it; the rest is one run.
+// A row is one reflection, except where it meets other faces: at its ends, or along its whole length.
 template <typename Real>
 void Walls<Real>::apply_row(Populations<Real>& populations, const CellMap& cells, const IncomingDirection& e,
                             int v) const {

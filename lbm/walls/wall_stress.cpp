@@ -52,8 +52,8 @@ std::ptrdiff_t WallStress<Real>::cell_at_wall(int u, int v) const {
   return indexing_.index(at[0], at[1], at[2]);
 }
 
-// From the farthest cell to the wall: how many follow each other from here on without a body between. Loops that are
-// vectorised where cells of the face's rows follow each other in memory.
+// Counts, from the farthest cell to the wall, the cells that follow each other without a body between. The loops are
+// vectorised where cells of the face's rows are contiguous in memory.
 template <typename Real>
 void WallStress<Real>::find_layers(const CellMap& cells) {
   const std::ptrdiff_t stride = indexing_.stride(u_axis_);

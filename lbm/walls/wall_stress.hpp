@@ -44,7 +44,7 @@ public:
   // Finds the cells whose velocities count: before what follows, and again where the map has changed.
   void find_layers(const CellMap& cells);
 
-  // Whether a row has such cells.
+  // True if a row has such cells.
   bool wants(int y, int z) const;
   // Takes the velocities of such a row, just swept. half_force: of that collision.
   void take_row(int y, int z, const RowMoments<Real>& moments, const CellMap& cells, const Vec3& half_force);
@@ -58,7 +58,8 @@ public:
   // Finds the stress of the coming exchange from what has been taken.
   void find(const CellMap& cells);
 
-  // Of the coming exchange, along the first or the second axis of the face (axis 0 or 1), at the cells of a row of it.
+  // Stress of the coming exchange along the first or second axis of the face (axis 0 or 1), at the cells of a row of
+  // it.
   const Real* row(int axis, int v) const { return stress_[axis].data() + static_cast<std::size_t>(v) * nu_; }
 
   // The state between two steps, row by row: T along the two axes of the face in the last collision, then in the one
@@ -92,9 +93,9 @@ private:
   std::array<std::vector<Real>, arrays> state_;  // at the cells of the face
   std::array<std::vector<Real>, 2> stress_;
   std::array<std::vector<Real>, 2> no_slip_, law_;  // T of the last rows by the first cell, and by the far one
-  std::vector<char> in_sublayer_;                   // whether the far one is there
+  std::vector<char> in_sublayer_;                   // true where the far cell is in the viscous sublayer
   std::vector<std::int32_t> layer_;  // at the cells of the face: of the cell whose velocity counts, from 0
-  std::vector<char> layers_in_row_;  // whether a row of layer_ has a layer: all rows for layer 0, then for 1, ...
+  std::vector<char> layers_in_row_;  // true if a row of layer_ has a layer: all rows for layer 0, then for 1, ...
   std::vector<double> reynolds_;     // of a row
 };
 

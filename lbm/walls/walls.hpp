@@ -40,7 +40,8 @@
 
 namespace thalweg::lbm {
 
-// One value for every cell at a face, with a ring of ghosts. The axes (u, v) are the two others in ascending order.
+// Field with one value for every cell at a face and a ring of ghosts. The axes (u, v) are the two others in ascending
+// order.
 template <typename Real>
 struct FaceField {
   int nu = 0, nv = 0;
@@ -66,7 +67,7 @@ public:
   // True if this rank's block has a wall at that face.
   bool present(int axis, bool high) const { return present_[face_of(axis, high)]; }
 
-  // How many cells next to a face apply() reads.
+  // Number of cells next to a face that apply() reads.
   int depth() const;
 
   // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date.
@@ -99,21 +100,20 @@ public:
   void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }
 
   // Bounced fraction r at a face that slips, for the halo exchange; empty elsewhere.
-  FaceField<Real>& bounced(int face) { return bounced_[face]; }
+  FaceField<Real>& bounced(int face) { return bounced_.at(static_cast<std::size_t>(face)); }
 
   void save(ArchiveWriter& archive, const Decomposition& decomposition, const Block& block) const;
   void load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block);
 
 private:
-  // Cells begin to end of a row along a face, for one direction that enters there: where the row's first cell is, and
-  // how far its cells, and each from the cell its mirrored population comes from, lie apart in memory.
+  // Cells begin to end of a row along a face, for one direction that enters there: its first cell, and the distances in
+  // memory between its cells, and from each to the cell that its mirrored population comes from.
   struct RowPart {
     int face, direction, v, begin, end;
     std::ptrdiff_t first, stride, tangential;
   };
 
-  // One direction that comes out of one face: how far it runs along the two axes of the face, and how many cells these
-  // have.
+  // A direction that enters from a face: its components along the two axes of the face, and their numbers of cells.
   struct IncomingDirection {
     IncomingDirection(const CellIndexing& indexing, int from_face, int along);
     int face, direction;

@@ -29,7 +29,7 @@ RefillTotals move_sphere(lbm::Fluid<double>& fluid, const Decomposition& decompo
                          const Hydrostatic& rest, const Vec3& before, const LinkBody& body) {
   BodyMap map(decomposition, fluid.block(), fluid.cells());
   map.begin_update();
-  const int slot = map.add(0, 3.0);
+  const BodySlot slot = map.add(0, 3.0);
   map.remap(slot, before);
   map.settle();
   map.begin_update();

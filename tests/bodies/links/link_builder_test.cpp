@@ -97,8 +97,8 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
   for (int round = 0; round < 300; ++round) {
     map.begin_update();
     for (GlobalId id = 0; id < grains; ++id) {
-      const int slot = map.slot_of(id);
-      if (slot < 0) {
+      const BodySlot slot = map.slot_of(id);
+      if (slot == BodySlot::none) {
         if (uniform(generator) < 0.5) map.remap(map.add(id, 2.0 + 1.5 * uniform(generator)), anywhere());
       } else if (uniform(generator) < 0.05) {
         map.remove(slot);
@@ -106,7 +106,8 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
         const Vec3 step =
             0.3 * (Vec3(uniform(generator), uniform(generator), uniform(generator)) - Vec3::Constant(0.5));
         const PeriodicBox box{Vec3(cells[0], cells[1], cells[2]), {true, true, false}};
-        map.remap(slot, uniform(generator) < 0.9 ? box.wrapped(map.bodies()[slot].centre + step) : anywhere());
+        map.remap(slot,
+                  uniform(generator) < 0.9 ? box.wrapped(map.bodies()[index_of(slot)].centre + step) : anywhere());
       }
     }
     map.settle();

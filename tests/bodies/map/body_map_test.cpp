@@ -117,7 +117,7 @@ private:
   lbm::Fluid<double> fluid_;
   BodyMap map_;
   std::map<GlobalId, Ball> balls_;
-  std::map<GlobalId, int> slots_;
+  std::map<GlobalId, BodySlot> slots_;
   std::uint64_t draws_ = 0;
 };
 

@@ -35,7 +35,7 @@ public:
   void place(const std::vector<Ball>& balls) {
     map_.begin_update();
     for (const Ball& ball : balls) {
-      if (map_.slot_of(ball.id) < 0) map_.add(ball.id, ball.radius);
+      if (map_.slot_of(ball.id) == BodySlot::none) map_.add(ball.id, ball.radius);
       map_.remap(map_.slot_of(ball.id), ball.centre);
     }
     map_.settle();

@@ -57,8 +57,8 @@ Load mean_load(const WaterBox& box, int steps) {
       continue;
     }
     // Its load is extrapolated; what the links gave in this step is the same quantity as that of a solid.
-    const int slot = system->bodies().slot_of(0);
-    const bodies::LinkBody here = slot < 0 ? bodies::LinkBody{} : system->bodies().body(slot);
+    const bodies::BodySlot slot = system->bodies().slot_of(0);
+    const bodies::LinkBody here = slot == bodies::BodySlot::none ? bodies::LinkBody{} : system->bodies().body(slot);
     const std::vector<Vec3> sums = vectors_over_ranks(MPI_COMM_WORLD, std::array{here.force, here.torque});
     mean.force += sums[0] * units.force() / (0.5 * steps);
     mean.torque += sums[1] * units.torque() / (0.5 * steps);
