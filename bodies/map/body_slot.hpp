@@ -1,6 +1,6 @@
-// The number of a body on this rank: solids first, then spheres. It indexes BodyMap::bodies() and the table of LinkBody,
-// and is the number that lbm::CellMap keeps of a covered cell. A type of its own, so that no slot of a grain in its
-// store can be taken for one.
+// The number of a body on this rank: solids first, then spheres. It indexes BodyMap::bodies() and the table of
+// LinkBody, and is the number that lbm::CellMap keeps of a covered cell. A type of its own, so that no slot of a grain
+// in its store can be taken for one.
 #pragma once
 
 #include <cstddef>

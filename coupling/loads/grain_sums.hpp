@@ -1,5 +1,5 @@
-// Sums of one step over the links of a grain, on the way from its body to its load. As 64-bit integers, so that dem adds
-// the sums of ghosts to those of their owners without knowing what they mean (GrainDynamics::add_ghost_values()).
+// Sums of one step over the links of a grain, on the way from its body to its load. As 64-bit integers, so that dem
+// adds the sums of ghosts to those of their owners without knowing what they mean (GrainDynamics::add_ghost_values()).
 #pragma once
 
 #include "bodies/map/link_table.hpp"
@@ -23,7 +23,7 @@ struct GrainSums {
 
 // Sums that only the stress of a grain needs.
 struct StressSums {
-  FixedTensor moments;                                // F_a x_b
+  FixedTensor moments;                               // F_a x_b
   std::array<std::int64_t, 3> occluded_by_solids{};  // in 36ths (bodies::OccludedPatches::by_solids())
 };
 
