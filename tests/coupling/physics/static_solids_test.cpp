@@ -170,7 +170,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   // As large as they would be before the step in which they leave it.
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max(),
                          least = std::numeric_limits<std::int64_t>::min();
-  auto& body = const_cast<bodies::LinkBody&>(system->bodies().body(0));
+  auto& body = const_cast<bodies::LinkBody&>(system->bodies().body(bodies::slot_of_solid(0)));
   for (const std::int64_t sum : {most, least}) {
     body.force = body.torque = {sum, sum, sum};
     body.mass = body.pressure = sum;
