@@ -2,7 +2,7 @@
 //
 // A link runs from the fluid cell x_f along c_i into a body; i' is the opposite, delta the distance to the surface, f^c
 // post-collision, x_ff = x_f - c_i, u_w the velocity of the surface where the link meets it. What comes back, f_i'(x_f,
-// t+1), is given by a rule: bouzidi_link.hpp or cli_link.hpp.
+// t+1), is given by a rule (link_rules.hpp).
 // If x_ff is covered by a body, Bouzidi's rule takes for f_i^c(x_ff) the equilibrium at the density of x_f and that
 // body's velocity at x_ff (Zhang et al. 2022; upstream_bodies.hpp); the other rule becomes half-way bounce-back. If it
 // lies beyond a wall, the population that the wall returns to x_f stands in.

@@ -248,7 +248,7 @@ TEST(StaticSolids, PoiseuilleFlowBetweenPlatesOffTheLatticeIsOfSecondOrder) {
 }
 
 TEST(StaticSolids, PoiseuilleFlowWithCliLinksIsThatOfTheClosureOfTheRule) {
-  // cli_link.hpp: slip = 2/3 (tau+ - 1/2)(tau- - 1/2). That is the whole error but for terms of the order of the
+  // link_rules.hpp: slip = 2/3 (tau+ - 1/2)(tau- - 1/2). That is the whole error but for terms of the order of the
   // velocity squared, 0.02^2; distances are stored in single precision. It is of second order: of the largest velocity
   // F H^2/(8 nu) it is 8 |delta^2/2 - slip|/H^2.
   for (const bool trt : {false, true})
