@@ -1,16 +1,20 @@
 """Named arrays with units."""
-from collections.abc import Mapping
+from thalweg.errors import MissingName
+from thalweg.labelled import Labelled
 
 
-class Columns(Mapping):
-    """Arrays by name; `units` has the unit of each ("1": none), `components` the names along the last axis, if any."""
+class Columns(Labelled):
+    """Arrays by name; `units` has the unit of each ("1": none), `components` the names along the last axis, if any. source: where
+    they come from, for messages. axes: names of their leading axes (thalweg.labelled)."""
 
-    def __init__(self, arrays, units, components=None):
-        self._arrays = dict(arrays)
+    def __init__(self, arrays, units, components=None, source="", axes=()):
+        self._arrays, self.source, self.axes = dict(arrays), str(source), tuple(axes)
         self.units = {name: units.get(name, "1") for name in self._arrays}
         self.components = dict(components or {})
 
     def __getitem__(self, name):
+        if name not in self._arrays:
+            raise MissingName(name, self._arrays, self.source)
         return self._arrays[name]
 
     def __iter__(self):

@@ -14,6 +14,9 @@ GRAIN_UNITS = {"id": "1", "clump": "1", "radius": "m", "speed": "m/s", "position
 FLUID_UNITS = {"velocity": "m/s", "pressure": "Pa", "density": "kg/m^3", "grain_id": "1", "shear_rate": "1/s",
                "eddy_viscosity": "m^2/s", "vorticity": "1/s", "q_criterion": "1/s^2"}
 
+AXES = {3: list("xyz"), 9: [row + column for row in "xyz" for column in "xyz"], 6: ["xx", "yy", "zz", "xy", "xz", "yz"],
+        4: list("wxyz")}   # names of components by their number; of four: a quaternion
+
 
 class GrainFrame:
     """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row, column]
@@ -31,7 +34,21 @@ class GrainFrame:
             raise RunFolderError(f"{self.path}: there are no grains in this frame.")
         arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
                   for name, values in arrays.items()}
-        return Columns({"position": position, **arrays}, GRAIN_UNITS)
+        return Columns({"position": position, **arrays}, GRAIN_UNITS, source=self.path, axes=("grain",))
+
+    def _tensors_flat(self):
+        """The same with the nine components of a tensor along one axis, all with their names."""
+        arrays = {name: values.reshape(len(values), -1) if values.ndim > 1 else values for name, values in self.arrays.items()}
+        components = {name: AXES[values.shape[1]] for name, values in arrays.items() if values.ndim > 1 and values.shape[1] in AXES}
+        return Columns(arrays, GRAIN_UNITS, components, self.path, ("grain",))
+
+    def to_pandas(self):
+        """A pandas.DataFrame with a row for each grain, by its id."""
+        return self._tensors_flat().to_pandas()
+
+    def to_xarray(self):
+        """An xarray.Dataset with the dimensions grain, axis and tensor, and the attribute `time` (s)."""
+        return self._tensors_flat().to_xarray().assign_attrs(time=self.time)
 
     def __getattr__(self, name):
         if name in GRAIN_UNITS:
@@ -80,7 +97,22 @@ class FluidFrame:
 
     @property
     def arrays(self):
-        return Columns(self._image[2], FLUID_UNITS)
+        return Columns(self._image[2], FLUID_UNITS, source=self.path)
+
+    def _with_places(self):
+        places = {axis: self.centres("xyz".index(axis)) for axis in "zyx"}
+        components = {name: AXES[values.shape[3]] for name, values in self._image[2].items() if values.ndim > 3}
+        columns = Columns({**self._image[2], **places}, {**FLUID_UNITS, **dict.fromkeys("xyz", "m")}, components, self.path, "zyx")
+        columns.row_axes = 3
+        return columns
+
+    def to_pandas(self):
+        """A pandas.DataFrame with a row for each cell, by z, y and x (m)."""
+        return self._with_places().to_pandas()
+
+    def to_xarray(self):
+        """An xarray.Dataset with the dimensions z, y, x (m, of the middles of the cells) and axis, and the attribute `time` (s)."""
+        return self._with_places().to_xarray().assign_attrs(time=self.time)
 
     def centres(self, axis):
         """Middle of the cells along x (0), y (1) or z (2), in m."""

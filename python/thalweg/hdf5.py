@@ -18,10 +18,11 @@ def opened(path):
                              "restart the run from an earlier checkpoint, which writes a new one.") from None
 
 
-def columns_of(group):
+def columns_of(group, axes=()):
     """The arrays of an HDF5 group with their units and components."""
     return Columns({name: data[()] for name, data in group.items()}, {name: unit_of(data) for name, data in group.items()},
-                   {name: components_of(data) for name, data in group.items() if "components" in data.attrs})
+                   {name: components_of(data) for name, data in group.items() if "components" in data.attrs},
+                   f"{group.file.filename}{group.name.rstrip('/')}", axes)
 
 
 def unit_of(data):

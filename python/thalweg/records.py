@@ -6,7 +6,9 @@ import h5py
 import numpy as np
 
 from thalweg.columns import Columns
+from thalweg.errors import MissingName
 from thalweg.hdf5 import columns_of, components_of, opened, unit_of
+from thalweg.labelled import Labelled, package
 
 
 def parts_of(folder, name):
@@ -16,9 +18,11 @@ def parts_of(folder, name):
     return [single] * single.exists() + paths or None
 
 
-class Records(Mapping):
+class Records(Labelled):
     """Arrays by name as Columns has them, those that grow joined along time. An array is read when it is asked for, and no other
     with it."""
+
+    axes, row_axes = ("time", "grain"), 2
 
     def __init__(self, paths):
         self._paths, self._read = paths, {}
@@ -42,7 +46,7 @@ class Records(Mapping):
     def __getitem__(self, name):
         if name not in self._read:
             if name not in self.units:
-                raise KeyError(name)
+                raise MissingName(name, self.units, str(self._paths[-1].parent))
             self._read[name] = self._joined(name) if name in self._rows else self._array(self._paths[-1], name)
         return self._read[name]
 
@@ -74,11 +78,20 @@ class Records(Mapping):
 class Probes(Records):
     """With `position` (m) [point, axis], the centres of the cells; spacing: of the cells, m."""
 
+    axes = ("time", "point")
+
     def __init__(self, paths, spacing):
         super().__init__(paths)
         cells = np.column_stack([self[f"cell_{axis}"] for axis in "xyz"])
         self._read["position"] = (cells + 0.5) * spacing
         self.units["position"], self._shapes["position"] = "m", cells.shape
+        self.components["position"] = list("xyz")
+
+    def dimensions(self, name):
+        """Names of the axes of an array; what is the same at all times has that of the points first."""
+        if name == "position":
+            return ("point", "axis")
+        return ("point",) if name.startswith("cell_") else super().dimensions(name)
 
 
 class Event(Columns):
@@ -86,7 +99,7 @@ class Event(Columns):
 
     def __init__(self, group):
         columns = columns_of(group)
-        super().__init__(columns, columns.units, columns.components)
+        super().__init__(columns, columns.units, columns.components, columns.source, ("time",))
         self.attributes = {name: float(value) for name, value in group.attrs.items() if not name.endswith("_unit")}
 
 
@@ -101,7 +114,7 @@ class Events(Mapping):
     the run that was watched otherwise, gets the next that is free."""
 
     def __init__(self, paths):
-        found = []
+        self._folder, found = paths[-1].parent, []
         for path in paths:
             with opened(path) as file:
                 part = [(float(group.attrs["time"]), path, name) for name, group in file.items() if isinstance(group, h5py.Group)]
@@ -115,6 +128,8 @@ class Events(Mapping):
             self._places[name] = path, own
 
     def __getitem__(self, name):
+        if name not in self._places:
+            raise MissingName(name, self._places, str(self._folder))
         path, own = self._places[name]
         with opened(path) as file:
             return Event(file[own])
@@ -124,3 +139,8 @@ class Events(Mapping):
 
     def __len__(self):
         return len(self._places)
+
+    def to_pandas(self):
+        """A pandas.DataFrame with a row for each event, by name, and its single numbers as columns; those of the arrays of one event come
+        from its own to_pandas()."""
+        return package("pandas").DataFrame({name: event.attributes for name, event in self.items()}).T

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from thalweg.case_file import read_case
-from thalweg.errors import RunFolderError
+from thalweg.errors import MissingName, RunFolderError
 from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame
 from thalweg.hdf5 import columns_of, opened
 from thalweg.records import Events, Probes, Records, parts_of
@@ -69,31 +69,40 @@ class Run:
         until the first checkpoint after they were begun."""
         path = self.folder / "profiles.h5"
         if not path.exists():
-            return {}
+            return Profiles({}, path)
         with opened(path) as file:
-            return {name: columns_of(group) for name, group in file.items()}
+            return Profiles({name: columns_of(group, [axis for axis in "zy" if axis in group]) for name, group in file.items()}, path)
+
+    def _recorded(self, name):
+        """Paths of the parts of what an observer records."""
+        parts = parts_of(self.folder, name)
+        if not parts:
+            told = name in (self.case.get("analysis") or {})
+            raise RunFolderError(f"{self.folder}: it has no {name} {'yet; they are written with the first checkpoint' if told else ''}"
+                                 f"{'' if told else f'because its case has no analysis.{name}, which records them'}.")
+        return parts
 
     @cached_property
     def tracks(self):
         """Tracks of single grains (`analysis.tracks`): `id`, `time` and arrays [time, grain, axis], of which `position` goes on
-        where a grain leaves a periodic box, each read when it is asked for; None where there are none."""
-        parts = parts_of(self.folder, "tracks")
-        return parts and Records(parts)
+        where a grain leaves a periodic box, each read when it is asked for. RunFolderError where none are recorded."""
+        parts = self._recorded("tracks")
+        return Records(parts)
 
     @cached_property
     def probes(self):
         """Velocity (m/s) [time, point, axis] and pressure (Pa) [time, point] of the fluid at high rate (`analysis.probes`), with
-        `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when it is asked for; None where there
-        are none."""
-        parts = parts_of(self.folder, "probes")
-        return parts and Probes(parts, float(self.case["domain"]["spacing"]))
+        `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when it is asked for.
+        RunFolderError where none are recorded."""
+        parts = self._recorded("probes")
+        return Probes(parts, float(self.case["domain"]["spacing"]))
 
     @cached_property
     def entrainment(self):
         """Events at which grains started to move (`analysis.entrainment`) by name, each with its arrays and, as `attributes`, its
-        single numbers; None where they are not looked for."""
-        parts = parts_of(self.folder, "entrainment")
-        return parts and Events(parts)
+        single numbers. RunFolderError where they are not looked for."""
+        parts = self._recorded("entrainment")
+        return Events(parts)
 
     @cached_property
     def bed(self):
@@ -229,6 +238,18 @@ class Run:
         open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
         top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
         return bool(self.gravity[0] > 0.0 and self.periodic[0] and not steered and not open_faces and top_is_free)
+
+
+class Profiles(dict):
+    """The groups of profiles.h5 by name."""
+
+    def __init__(self, groups, path):
+        super().__init__(groups)
+        self.path = path
+
+    def __missing__(self, name):
+        raise MissingName(name, self, str(self.path), f"analysis.{name} in the case would record it, from its time `from` on; it is written "
+                                                      "with every checkpoint.")
 
 
 def runs_of_sweep(folder):

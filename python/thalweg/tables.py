@@ -48,4 +48,4 @@ def read_series(path):
     headings = [HEADING.match(heading).groups() for heading in rows[0]]
     values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(headings)])
     names = [name for name, _ in headings]
-    return Columns(zip(names, values.T), {name: unit or "1" for name, unit in headings})
+    return Columns(zip(names, values.T), {name: unit or "1" for name, unit in headings}, source=path, axes=("time",))

@@ -193,7 +193,8 @@ class RunFolder(made_up.MadeUpFolder):
 
     def test_tracks(self):
         """Parts in the order of their numbers, behind the single file of an older version, of which a restart has outdated a row."""
-        self.assertIsNone(thalweg.Run(self.folder).tracks)
+        with self.assertRaisesRegex(thalweg.RunFolderError, r"it has no tracks because its case has no analysis\.tracks, which records them"):
+            thalweg.Run(self.folder).tracks
         places = np.arange(90.0).reshape(15, 2, 3)
         self.write_part(self.folder / "tracks/part_000000000.h5", [], np.zeros((0, 2, 3)))
         self.write_part(self.folder / "tracks/part_000000009.h5", np.arange(3, 9), places[3:9])
@@ -223,7 +224,9 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertLess(peak, 1.3 * position.nbytes)   # it, and a part
 
     def test_entrainment(self):
-        self.assertIsNone(thalweg.Run(self.folder).entrainment)
+        (self.folder / "case.yaml").write_text(made_up.CASE.replace("analysis: {", "analysis: {entrainment: {}, "))
+        with self.assertRaisesRegex(thalweg.RunFolderError, "it has no entrainment yet; they are written with the first checkpoint"):
+            thalweg.Run(self.folder).entrainment
         (self.folder / "entrainment").mkdir()
         for part, events in ((0, ()), (5, ((8, 0.4), (9, 0.1))), (9, ((8, 0.7), (9, 0.8)))):   # the last part watched otherwise
             with h5py.File(self.folder / f"entrainment/part_{part}.h5", "w") as file:
