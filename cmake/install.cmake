@@ -16,6 +16,18 @@ install(FILES scripts/mpi_environment DESTINATION ${thalweg_data_folder}/scripts
 install(PROGRAMS scripts/cluster/slurm.sh scripts/cluster/pbs.sh scripts/cluster/turn.sh
         DESTINATION ${thalweg_data_folder}/scripts/cluster)
 
+# Completion for shells and the manual page come from the help of the program, part of which Python prints.
+set(thalweg_help_folder ${PROJECT_BINARY_DIR}/help)
+install(CODE "execute_process(COMMAND \"${THALWEG_PYTHON}\" -B \"${PROJECT_SOURCE_DIR}/cmake/help_files.py\" \"$<TARGET_FILE:thalweg>\"
+                        \"${thalweg_help_folder}\" RESULT_VARIABLE failed ERROR_VARIABLE said)
+if(failed)
+  message(WARNING \"No completion for shells and no manual page: \${said}\")
+endif()")
+install(FILES ${thalweg_help_folder}/thalweg.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+install(FILES ${thalweg_help_folder}/thalweg.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME thalweg
+        OPTIONAL)
+install(FILES ${thalweg_help_folder}/_thalweg DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+
 # io needs VTK, HDF5 and yaml-cpp, which not every program has to have.
 install(TARGETS thalweg_compile_options thalweg_core thalweg_lbm thalweg_bodies thalweg_dem thalweg_beds thalweg_model_fluid thalweg_coupling thalweg_continuum thalweg_analysis thalweg_loop
         EXPORT thalweg_libraries ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -52,7 +52,7 @@ def take(line, session):
         session.warnings.append(line.removeprefix("warning: "))
     elif passing:
         session.warnings.append(f"{passing[2]} (at {passing[1]} s)")
-    elif line.startswith(("bed: ", "no bed at the end", "not at rest")):
+    elif line.startswith(("no bed at the end", "not at rest")):
         session.remarks.append(line)
 
 

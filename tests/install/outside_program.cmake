@@ -32,6 +32,11 @@ foreach(script paraview_view.py compare_checkpoints.py mpi_environment cluster/s
   endif()
 endforeach()
 run(${WORK}/prefix/bin/thalweg plot --help)
+foreach(file man/man1/thalweg.1 bash-completion/completions/thalweg zsh/site-functions/_thalweg)
+  if(NOT EXISTS ${WORK}/prefix/share/${file})
+    message(FATAL_ERROR "share/${file} is not installed")
+  endif()
+endforeach()
 run(${PYTHON} -B ${WORK}/prefix/share/thalweg/scripts/compare_checkpoints.py --help)
 run(${WORK}/prefix/bin/thalweg check ${WORK}/prefix/share/thalweg/cases/quickstart/case.yaml)
 # Cases are copied with the files beside them, and without what runs and sweeps have left in folders below.

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -127,7 +128,6 @@ class Report(unittest.TestCase):
         self.assertIn("Profiles", page.sections)
         # Total and driving stress are 1 Pa everywhere, and side walls take 1 Pa: the gap is all of it, and the driving stress is nought.
         self.assertIn("The balance of stresses has not been measured yet.", page.text)
-        import h5py
         with h5py.File(self.folder / "profiles.h5", "a") as file:
             file["stress_balance/side_wall_stress"][...] = 0.75
         self.assertIn("by 0.75 Pa at most, 3e+02 % of its largest value", self.page().text)
@@ -140,9 +140,13 @@ class Report(unittest.TestCase):
         self.assertNotIn("Transport", page.sections)
         self.assertIn("Course of the run", page.sections)
         self.assertEqual(page.pictures, 2)
+        for velocity, pictures in ((0.0, 2), (1.0, 3)):   # means that have not begun are not drawn
+            with h5py.File(self.folder / "profiles.h5", "w") as file:
+                file["fluid_statistics/z"], file["fluid_statistics/velocity"] = np.arange(4.0), np.full((4, 3), velocity)
+                file["fluid_statistics/reynolds_stress"] = np.zeros((4, 6))
+            self.assertEqual(self.page().pictures, pictures)
 
     def test_a_continuum(self):
-        import h5py
         self.case(head="system: continuum\n")
         for name in ("grains.pvd", "fluid.pvd"):
             (self.folder / name).unlink()

@@ -1,7 +1,13 @@
 """Means of a fluid alone over the height."""
 import matplotlib.pyplot as plt
+import numpy as np
 
 from thalweg.height_profiles import GRID
+
+
+def measured(run):
+    """Whether there are means of the fluid: they begin at a time of their own (`from`)."""
+    return "fluid_statistics" in run.profiles and bool(np.any(run.profiles["fluid_statistics"]["velocity"]))
 
 
 def figure_of(run):

@@ -25,7 +25,7 @@ def side_view_of(run, time=None):
 def profiles_of(run):
     """The function that draws the means over the height; None where the run has none yet."""
     if run.case.get("system") == "fluid":
-        return (lambda: fluid_profiles.figure_of(run)) if "fluid_statistics" in run.profiles else None
+        return (lambda: fluid_profiles.figure_of(run)) if fluid_profiles.measured(run) else None
     if height_profiles.has_grains(run) and height_profiles.measured(run):
         return lambda: height_profiles.figure_of(run)
     return None

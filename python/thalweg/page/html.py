@@ -19,7 +19,7 @@ td:first-child { white-space: nowrap; }
 tr + tr td { border-top: 1px solid #edf0f2; }
 .bar { background: #a9cfe3; height: .7rem; display: block; }
 td.wide { width: 40%; }
-figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; display: block; }
+figure { margin: 1rem 0; } figure img { max-width: 100%; max-height: 34rem; display: block; }
 figcaption { font-size: .9rem; color: #4d5c66; margin-top: .3rem; }
 ul { padding-left: 1.2rem; } li { margin: .3rem 0; }
 li.warning::marker { color: #b3541e; }

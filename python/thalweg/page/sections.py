@@ -104,7 +104,7 @@ def profiles(run):
         return html.section("Profiles", attempt(lambda: column_figure(run), "The column at the end: solid fraction, velocities and stresses "
                                                                             "over the height."))
     draw = overview.profiles_of(run)
-    if draw is None and "fluid_statistics" in found:
+    if draw is None and fluid_profiles.measured(run):
         def draw():
             return fluid_profiles.figure_of(run)
     if draw is None:
