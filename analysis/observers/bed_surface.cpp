@@ -1,6 +1,7 @@
 #include "analysis/observers/bed_surface.hpp"
 
 #include "analysis/tools/mean_observer.hpp"
+#include "core/geometry/hydraulic_radius.hpp"
 #include "core/state/whole_dataset.hpp"
 
 #include <algorithm>
@@ -81,7 +82,7 @@ void BedSurface::measure(const Snapshot& snapshot) {
 double BedSurface::flow_depth() const { return box_.size.z() - bed_height_; }
 
 double BedSurface::hydraulic_radius() const {
-  return flow_depth() * layers_.width() / (layers_.width() + flow_->side_walls * flow_depth());
+  return thalweg::hydraulic_radius(flow_depth(), layers_.width(), flow_->side_walls);
 }
 
 std::vector<Diagnostic> BedSurface::diagnostics() const {

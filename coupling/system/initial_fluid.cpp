@@ -1,6 +1,7 @@
 #include "coupling/system/initial_fluid.hpp"
 
 #include "lbm/fluid/solenoidal_noise.hpp"
+#include "lbm/walls/law_of_the_wall.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,11 +87,10 @@ InitialFluid initial_fluid(const InitialFluidKeys& fluid, const Index3& cells, c
     };
   if (!fluid.log_profile) return {};
   const InitialFluid calm = [profile = *fluid.log_profile](const Vec3& position) {
-    constexpr double von_karman = 0.41;
     const double height = position.z() - *profile.bed_height;
     FluidInitialState state;
     if (height > *profile.roughness)
-      state.velocity.x() = *profile.shear_velocity / von_karman * std::log(height / *profile.roughness);
+      state.velocity.x() = *profile.shear_velocity / lbm::karman_constant * std::log(height / *profile.roughness);
     return state;
   };
   return fluid.log_profile->perturbation ? with_perturbation(*fluid.log_profile, calm, cells, periodic, spacing) : calm;

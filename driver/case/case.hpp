@@ -10,6 +10,7 @@
 #include "core/base/types.hpp"
 #include "core/base/units.hpp"
 #include "core/geometry/triangle_mesh.hpp"
+#include "core/keys/named_choice.hpp"
 #include "coupling/keys/coupling_keys.hpp"
 #include "coupling/keys/face_keys.hpp"
 #include "coupling/keys/fluid_keys.hpp"
@@ -28,6 +29,8 @@
 namespace thalweg::driver {
 
 enum class SystemKind { resolved, fluid, grains, model_fluid, continuum };
+std::vector<NamedChoice<SystemKind>> choices_of(SystemKind);  // its words in a case file
+std::string name_of(SystemKind kind);
 
 // The order of the faces everywhere in the driver.
 enum FaceIndex { x_low, x_high, y_low, y_high, bottom, top };
@@ -230,8 +233,6 @@ std::vector<std::size_t> free_populations(const Case& c);
 // damping and by which it is divided beyond; or Hertz's contact at 1 m/s (dem/laws/material.hpp). Contacts between
 // populations are never shorter than the shortest within one. s; infinite without grains.
 double shortest_contact(const Case& c);
-
-inline constexpr double karman = 0.41;  // von Karman's constant of the logarithmic law
 
 // The longest step of the grains (s) with which the shortest contact takes dem::fewest_steps_per_contact of them, and
 // that which can follow the lubrication force; infinite without grains, the second also without that force.

@@ -226,14 +226,22 @@ static void describe_column(SectionVisitor& visit, Case& c) {
                 });
 }
 
+std::vector<NamedChoice<SystemKind>> choices_of(SystemKind) {
+  return {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
+          {SystemKind::fluid, "fluid", "fluid alone"},
+          {SystemKind::grains, "grains", "dry grains"},
+          {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"},
+          {SystemKind::continuum, "continuum", "a column of grains and water as two continua"}};
+}
+
+std::string name_of(SystemKind kind) {
+  for (const NamedChoice<SystemKind>& choice : choices_of(kind))
+    if (choice.value == kind) return choice.name;
+  return {};
+}
+
 void describe(SectionVisitor& visit, Case& c) {
-  visit.choice<SystemKind>("system", c.system,
-                           {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
-                            {SystemKind::fluid, "fluid", "fluid alone"},
-                            {SystemKind::grains, "grains", "dry grains"},
-                            {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"},
-                            {SystemKind::continuum, "continuum", "a column of grains and water as two continua"}},
-                           {.meaning = "what is simulated", .required = true});
+  visit.choice("system", c.system, {.meaning = "what is simulated", .required = true});
   const bool with_fluid = has_fluid(c), with_grains = has_grains(c.system);
   const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
   std::optional<std::string> preset;  // has been laid beneath the case before it is read

@@ -2,6 +2,7 @@
 
 #include "analysis/tools/bed_height.hpp"
 #include "beds/packing/packing.hpp"
+#include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/estimate/obstacles.hpp"
 #include "driver/estimate/reference_grain.hpp"
@@ -88,9 +89,8 @@ bool drives_flow(const Case& c, int axis) {
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
 
 double hydraulic_radius(const Case& c, double depth) {
-  const double width = c.domain.size.y();
   const int walls = side_walls(c);
-  return walls == 0 ? depth : depth * width / (walls * depth + width);
+  return walls == 0 ? depth : thalweg::hydraulic_radius(depth, c.domain.size.y(), walls);
 }
 
 double settled_fraction(const Case& c) {

@@ -4,6 +4,7 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/laminar_channel.hpp"
 #include "driver/estimate/obstacles.hpp"
+#include "lbm/walls/law_of_the_wall.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,8 @@
 namespace thalweg::driver {
 
 namespace {
+
+using lbm::karman_constant;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Transition: of U R/nu, and of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
@@ -61,7 +64,7 @@ double log_of(double distance, double friction_velocity, const Channel& channel)
 template <typename Law>
 double friction_velocity_of(double velocity, const Law& logarithms) {
   double friction_velocity = velocity / 20.0;
-  for (int n = 0; n < 50; ++n) friction_velocity = karman * velocity / logarithms(friction_velocity);
+  for (int n = 0; n < 50; ++n) friction_velocity = karman_constant * velocity / logarithms(friction_velocity);
   return friction_velocity;
 }
 
@@ -83,7 +86,7 @@ void consider_start(const Case& c, FlowEstimate& flow) {
   if (!start.log_profile || !is_complete(*start.log_profile)) return;
   const double height = (c.domain.size.z() - *start.log_profile->bed_height) / *start.log_profile->roughness;
   if (height > 1.0)
-    consider(flow, *start.log_profile->shear_velocity / karman * std::log(height), FlowCause::initial_fluid);
+    consider(flow, *start.log_profile->shear_velocity / karman_constant * std::log(height), FlowCause::initial_fluid);
 }
 
 // In the time of the run a slope adds no more than g_x times that time to the speed of the start.
@@ -99,7 +102,7 @@ void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& fl
 // Smooth walls on either side: the law of the wall holds over half the width.
 double velocity_between_side_walls(double friction_velocity, const Channel& channel) {
   const double distance = 9.0 * friction_velocity * std::min(channel.reach, channel.half_width) / channel.viscosity;
-  return distance > std::numbers::e ? friction_velocity / karman * std::log(distance) : infinite;
+  return distance > std::numbers::e ? friction_velocity / karman_constant * std::log(distance) : infinite;
 }
 
 bool holds_back(const coupling::FaceKeys& face) {
@@ -112,7 +115,7 @@ double turbulent_velocity(const Case& c, const Channel& channel, double along) {
                              ? velocity_between_side_walls(std::sqrt(along * channel.radius), channel)
                              : infinite;
   const double over_bed = std::sqrt(along * channel.distance());
-  return std::min(over_bed / karman * log_of(channel.distance(), over_bed, channel), between);
+  return std::min(over_bed / karman_constant * log_of(channel.distance(), over_bed, channel), between);
 }
 
 // m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them.
@@ -133,7 +136,7 @@ SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
   if (slow.mean * channel.radius / channel.viscosity < channel_transition)
     return {slow.largest, slow.mean, friction_velocity, true, slow.spin_up};
   const double speed = turbulent_velocity(c, channel, along);
-  const double bulk = std::max(0.5 * speed, speed - friction_velocity / karman);
+  const double bulk = std::max(0.5 * speed, speed - friction_velocity / karman_constant);
   return {speed, bulk, friction_velocity, false, 2.0 * bulk / along};
 }
 
@@ -167,7 +170,7 @@ FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
                                : friction_velocity_of(mean, [&](double friction_velocity) {
                                    return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
                                  });
-  flow.speed = flow.laminar ? mean * of_unit.largest / of_unit.mean : mean + flow.friction_velocity / karman;
+  flow.speed = flow.laminar ? mean * of_unit.largest / of_unit.mean : mean + flow.friction_velocity / karman_constant;
   flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time +
                  (flow.laminar ? of_unit.spin_up : turnovers_to_adapt * channel.depth / flow.friction_velocity);
   return flow;

@@ -6,6 +6,7 @@
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/input/grain_checks.hpp"
 #include "driver/input/run_context.hpp"
+#include "lbm/walls/law_of_the_wall.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -122,7 +123,7 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
         fmt::format("no fluid is left above the bed; give a height in m below {:.6g}", c.domain.size[2]));
   check_lattice_velocity(
       c, document, "initial.fluid.log_profile.shear_velocity",
-      *profile.shear_velocity * (std::log(depth / *profile.roughness) / 0.41 +
+      *profile.shear_velocity * (std::log(depth / *profile.roughness) / lbm::karman_constant +
                                  (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 

@@ -130,19 +130,12 @@ std::string resolved_yaml(const Case& c) { return io::written(with_stiffnesses(c
 
 namespace {
 
-struct NamedSystem {
-  const char* name;
-  SystemKind kind;
-};
-constexpr NamedSystem systems[] = {{"resolved", SystemKind::resolved},
-                                   {"fluid", SystemKind::fluid},
-                                   {"grains", SystemKind::grains},
-                                   {"model_fluid", SystemKind::model_fluid},
-                                   {"continuum", SystemKind::continuum}};
+using NamedSystem = NamedChoice<SystemKind>;
 
 constexpr const char* how_to_read =
-    "Comments give the unit, the range and the\n# meaning. \"example\": the key has no default, and the value is only "
-    "illustrative; keys that are commented out\n# are optional, and their values are examples as well.\n";
+    "\n# Comments give the unit, the range and the meaning. \"example\": the key has no default, and the value is "
+    "only\n"
+    "# illustrative; keys that are commented out are optional, and their values are examples as well.\n";
 
 io::SectionWriter documentation_of(SystemKind system) {
   io::SectionWriter writer(io::YamlStyle::documented);
@@ -153,9 +146,9 @@ io::SectionWriter documentation_of(SystemKind system) {
 
 // Documentation of one section in one system; none if the system has no such section.
 std::optional<std::string> section_yaml(const NamedSystem& system, const std::vector<std::string>& path) {
-  const std::optional<std::string> text = documentation_of(system.kind).yaml_of(path);
+  const std::optional<std::string> text = documentation_of(system.value).yaml_of(path);
   if (!text) return std::nullopt;
-  return fmt::format("# {} of a case with system: {}, with its keys. {}{}", fmt::join(path, "."), system.name,
+  return fmt::format("# {} of a case with system: {}, with its keys.{}{}", fmt::join(path, "."), system.name,
                      how_to_read, *text);
 }
 
@@ -172,21 +165,25 @@ std::vector<std::string> parts_of(const std::string& path) {
 std::string defaults_yaml(const std::string& what) {
   if (const std::optional<std::string_view> preset = preset_text(what)) return std::string(*preset);
   const std::vector<std::string> path = parts_of(what);
-  const auto* const named = std::find_if(std::begin(systems), std::end(systems), [&](const NamedSystem& system) {
+  const std::vector<NamedSystem> systems = choices_of(SystemKind{});
+  const auto named = std::find_if(systems.begin(), systems.end(), [&](const NamedSystem& system) {
     return !path.empty() && system.name == path.front();
   });
-  if (named != std::end(systems)) {
+  if (named != systems.end()) {
     if (path.size() == 1)
-      return fmt::format("# Every key of a case with system: {}, with its default. {}{}", named->name, how_to_read,
-                         documentation_of(named->kind).yaml());
+      return fmt::format("# Every key of a case with system: {}, with its default.{}{}", named->name, how_to_read,
+                         documentation_of(named->value).yaml());
     if (const auto text = section_yaml(*named, {path.begin() + 1, path.end()})) return *text;
   }
   for (const NamedSystem& system : systems)
     if (const auto text = path.empty() ? std::nullopt : section_yaml(system, path)) return *text;
+  std::vector<std::string> names;
+  for (const NamedSystem& system : systems) names.push_back(system.name);
   throw InputError(fmt::format(
-      "There is no system or section \"{}\": give one of resolved, fluid, grains, model_fluid, continuum, or a section "
-      "such as contact, or both, such as grains.contact, or a preset ({}); the sections of resolved are {}.",
-      what, preset_names(), fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
+      "There is no system or section \"{}\": give one of {}, or a section such as contact, or both, such as "
+      "grains.contact, or a preset ({}); the sections of resolved are {}.",
+      what, fmt::join(names, ", "), preset_names(),
+      fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
 }
 
 }  // namespace thalweg::driver

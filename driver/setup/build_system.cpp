@@ -26,22 +26,6 @@ constexpr Entry builders[] = {
 
 }  // namespace
 
-const char* name_of(SystemKind kind) {
-  switch (kind) {
-    case SystemKind::resolved:
-      return "resolved";
-    case SystemKind::fluid:
-      return "fluid";
-    case SystemKind::grains:
-      return "grains";
-    case SystemKind::model_fluid:
-      return "model_fluid";
-    case SystemKind::continuum:
-      return "continuum";
-  }
-  return "";
-}
-
 Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested) {
   if (c.system == SystemKind::continuum) {
     if (requested)

@@ -35,6 +35,5 @@ std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communica
                                                Start start);
 
 // The name of a kind of system in a case file: "resolved", "fluid", "grains", "model_fluid" or "continuum".
-const char* name_of(SystemKind kind);
 
 }  // namespace thalweg::driver

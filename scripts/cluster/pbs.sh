@@ -4,10 +4,10 @@
 #   CASE=CASE.yaml FOLDER=RUN_FOLDER qsub -v CASE,FOLDER scripts/cluster/pbs.sh      (from the folder of Thalweg)
 #
 # Adapt the #PBS lines, or give them to qsub: the next job gets the queue, account, project, nodes and walltime of this one, as
-# qstat -f tells them. The program saves its state and stops in good order before the walltime; the next job goes on from there,
+# qstat -f tells them. The program saves its state and stops cleanly before the walltime; the next job continues from there,
 # and the result has the same bits as a run that was never interrupted, whatever the number of ranks of each job. A job that PBS
-# itself runs again (after a failed node: -r y) goes on as well. thalweg stop RUN_FOLDER ends it all, also while the next job
-# waits in the queue, and so does qdel; the same qsub goes on.
+# itself runs again (after a failed node: -r y) continues as well. thalweg stop RUN_FOLDER ends it all, also while the next job
+# waits in the queue, and so does qdel; the same qsub continues it.
 #
 # Of these, add to -v which you set:
 # THALWEG_LAUNCH=mpiexec      what starts the ranks, with its options (mpirun)

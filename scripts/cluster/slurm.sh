@@ -4,9 +4,9 @@
 #   sbatch scripts/cluster/slurm.sh CASE.yaml RUN_FOLDER      (from the folder of Thalweg)
 #
 # Adapt the #SBATCH lines, or give them to sbatch. The program asks Slurm how long the job may take, saves its state and stops
-# in good order before that; the next turn goes on from there, and the result has the same bits as a run that was never
+# cleanly before that; the next turn continues from there, and the result has the same bits as a run that was never
 # interrupted, whatever the number of ranks of each turn. thalweg stop RUN_FOLDER ends it all, also while the job waits in the
-# queue, and so does scancel; the same sbatch goes on.
+# queue, and so does scancel; the same sbatch continues it.
 #
 # THALWEG_LAUNCH=srun         what starts the ranks, with its options (mpirun)
 # THALWEG_WALLTIME=HH:MM:SS   how long a turn may take, instead of Slurm's word less a twentieth or ten minutes

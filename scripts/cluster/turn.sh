@@ -4,7 +4,7 @@
 #   one_turn CASE.yaml RUN_FOLDER SECONDS
 #
 # SECONDS: what is left of the job's time (seconds_of, less_a_margin); empty: unknown, and the run is told of no limit.
-# Begins the run or goes on with it, whatever the last turn has left behind: thalweg run --resume decides, and loses nothing.
+# Starts or continues the run, whatever the last turn has left behind: thalweg run --resume decides, and loses nothing.
 # Returns 0 where the run is finished, 3 where it has saved its state and wants another turn, and 4 where its user has stopped
 # it: with thalweg stop, now or while this job waited in the queue, or with scancel or qdel. Anything else is an error.
 # USR1 and TERM to the script make the run save and stop: both reach the launcher as USR1, which it passes on to every rank
@@ -35,7 +35,7 @@ one_turn() {
 
   if [[ -n $cancelled ]]; then
     say "TERM ${seconds:+before the walltime of $(clock_of "$seconds")}, as from scancel or qdel: the run has saved its state," \
-        "and this job is not queued again; the same submission goes on."
+        "and this job is not queued again; the same submission continues it."
     return 4
   fi
   [[ $(latest_checkpoint "$folder") != "$before" ]] && return 3

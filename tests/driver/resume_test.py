@@ -41,7 +41,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
         straight = self.last_checkpoint("straight").read_bytes()
         for out in self.FOLDERS:
             said = self.resume("--until", "0.008", out=out).stdout
-            self.assertNotIn("going on", said)
+            self.assertNotIn("resuming", said)
             said = self.resume(out=out, ranks=2).stdout   # to the later end of the case
             self.assertIn(f"resuming from {out}/checkpoints/step_32.h5", said)
             self.assertEqual(self.last_checkpoint(out).read_bytes(), straight)
@@ -116,7 +116,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
 
     def test_the_folder_beside_the_case(self):
         self.run_well("run", self.case, "--resume", "--until", "0.005")
-        self.assertIn("going on", self.run_well("run", self.case, "--resume").stdout)
+        self.assertIn("resuming", self.run_well("run", self.case, "--resume").stdout)
         self.assertTrue(self.summary("run")["finished"])
 
     def unfinished(self):
@@ -137,7 +137,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             self.assertEqual(stopped.returncode, ASKED_TO_STOP, stopped.stderr)
             self.assertIn("run: thalweg stop was given after the last run had ended, so this one does not start; the same "
                           "command continues the run", stopped.stdout)
-        self.assertIn("going on", self.resume().stdout)
+        self.assertIn("resuming", self.resume().stdout)
         self.assertTrue(self.summary("run")["finished"])
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)
         self.assertFalse((self.folder / "run/stop").exists())
@@ -158,7 +158,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
     def test_who_restarts_by_hand_means_it(self):
         self.unfinished()
         self.run_well("stop", "run")
-        self.assertIn("going on", self.run_well("run", self.case, "--restart", "run").stdout)
+        self.assertIn("resuming", self.run_well("run", self.case, "--restart", "run").stdout)
         self.assertFalse((self.folder / "run/stop").exists())
 
 
