@@ -10,6 +10,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+import made_up_run  # noqa: E402
 SCRIPT = ROOT / "scripts/compare_checkpoints.py"
 
 
@@ -78,14 +80,20 @@ class Package(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             shutil.copytree(ROOT / "python", folder / "python")   # pip builds in the source folder
-            subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index", "--no-deps",
-                            "--target", folder / "installed", folder / "python"], check=True, capture_output=True)
-            said = subprocess.run([folder / "installed/bin/thalweg-tools", "analyze", folder], capture_output=True, encoding="utf-8",
-                                  env=os.environ | {"PYTHONPATH": str(folder / "installed")})
-            self.assertEqual(said.returncode, 2, said.stderr)
-            self.assertIn("there is no case.yaml in it", said.stderr)
+            subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
+            # Debian has h5py under another name (h5py._debian_h5py_serial), which pip does not take for it: no dependencies.
+            subprocess.run([folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index", "--no-deps",
+                            folder / "python"], check=True, capture_output=True)
+            made_up_run.write_run(folder / "run")
+            for words, code, output in ((("analyze", folder), 2, "there is no case.yaml in it"),
+                                        (("plot", "q", folder / "run"), 0, "transport_rate.png"), (("report", folder / "run"), 0, "report.html")):
+                said = subprocess.run([folder / "venv/bin/thalweg-tools", *words], capture_output=True, encoding="utf-8",
+                                      env=os.environ | {"PYTHONPATH": ""}, cwd=folder)
+                self.assertEqual(said.returncode, code, said.stderr)
+                self.assertIn(output, said.stdout + said.stderr)
+            packages = next((folder / "venv/lib").glob("python*/site-packages/thalweg"))
             sources, installed = ({str(path.relative_to(root)) for path in root.rglob("*.py")}
-                                  for root in (ROOT / "python/thalweg", folder / "installed/thalweg"))
+                                  for root in (ROOT / "python/thalweg", packages))
             self.assertEqual(installed, sources)
 
 
