@@ -15,6 +15,7 @@
 #include "driver/cost/scaling_table.hpp"
 #include "driver/input/case_reader.hpp"
 #include "driver/plan/check_report.hpp"
+#include "driver/plan/solve.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -95,9 +96,23 @@ std::vector<std::string> check_of(const Command& command, const Case& c) {
   return about_case(command.path, [&] { return check_report(c, measure_bandwidth()); });
 }
 
+Case case_of(const Command& command) {
+  std::vector<std::string> settings = command.settings;
+  if (command.until) settings.push_back(fmt::format("run.until={:.17g}", *command.until));
+  return read_case(command.path, settings);
+}
+
 // The report, and the refusal of what this machine has not the memory for: it is said last, with the report to go by.
 void check(const Command& command) {
-  const Case c = read_case(command.path, command.settings);
+  const Case c = case_of(command);
+  if (command.solve) {
+    std::fputs(joined(solution_report(c, command.path)).c_str(), stdout);
+    return;
+  }
+  if (command.json) {
+    std::fputs(about_case(command.path, [&] { return check_json(c, measure_bandwidth()); }).c_str(), stdout);
+    return;
+  }
   std::fputs(joined(check_of(command, c)).c_str(), stdout);
   std::fflush(stdout);
   about_case(command.path, [&] { refuse_without_memory(c); });
@@ -109,7 +124,7 @@ int plan(const Command& command, int argc, char** argv) {
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
   FailureBarrier failures(MPI_COMM_WORLD);
   try {
-    const Case c = read_case(command.path, command.settings);
+    const Case c = case_of(command);
     const std::vector<std::string> report = check_of(command, c);
     if (c.system == SystemKind::continuum) throw InputError("--ranks: every rank has the whole column; remove it.");
     const CoreSpeed speed = measure_core_speed(c, MPI_COMM_WORLD);
@@ -127,6 +142,8 @@ std::string answer(const Command& command) {
     case Command::Kind::check:
       check(command);
       return {};
+    case Command::Kind::create:
+      return joined(write_new_case(command.experiment, command.path, measure_bandwidth()));
     case Command::Kind::info:
       return joined(command.csv ? info_table(command.runs) : info_report(command.path));
     case Command::Kind::stop:

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ namespace thalweg::driver {
 namespace {
 
 constexpr const char* examples = R"(Examples:
+  thalweg new bed.yaml --diameter 0.005 --shields 0.05 --depth 0.03   a case for an experiment
   thalweg check cases/quickstart/case.yaml             what the case means and what it costs
   thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
   thalweg run case.yaml --out run/a --resume           begin, or go on after any interruption
@@ -55,7 +57,7 @@ constexpr const char* set_help =
     "Replace one value of the case, e.g. fluid.time_step=1e-5; null removes a key (repeatable)";
 
 struct Texts {
-  std::string walltime, layout;
+  std::string walltime, layout, sieve;
 };
 
 void add_run(CLI::App& app, Command& command, Texts& texts) {
@@ -89,6 +91,9 @@ void add_others(CLI::App& app, Command& command) {
       ->delimiter(',')
       ->check(positive_number())
       ->type_name("N,N,...");
+  check->add_option("--until", command.until, "Simulated time at which the run is to end, in s, instead of run.until");
+  check->add_flag("--solve", command.solve, "Print the keys to change so that no warning is left");
+  check->add_flag("--json", command.json, "Print the figures of the report, its lines and its warnings as JSON");
   check->add_option("--latency", command.network.latency, "Network latency, s")
       ->check(positive_number())
       ->capture_default_str();
@@ -112,6 +117,33 @@ void add_others(CLI::App& app, Command& command) {
   stop->final_callback([&] { command.kind = Command::Kind::stop; });
   // Only listed in the help; python_command.hpp runs them.
   for (const PythonCommand& other : python_commands) app.add_subcommand(other.name, other.summary);
+}
+
+void add_new(CLI::App& app, Command& command, Texts& texts) {
+  Experiment& e = command.experiment;
+  CLI::App* add = app.add_subcommand("new", "Write a case from what is known of an experiment");
+  add->add_option("CASE.yaml", command.path, "The file to write")->required();
+  const auto number = [&](const char* name, auto& value, const char* meaning) {
+    add->add_option(name, value, meaning)->check(positive_number());
+  };
+  number("--diameter", e.diameter, "Of the grains, m; or --sieve");
+  add->add_option("--sieve", texts.sieve, "Grading curve: sieves in m and the share of the mass that passes each")
+      ->type_name("D:P,D:P,...");
+  number("--shields", e.shields_number, "Shields number; two of --shields, --slope and --depth");
+  number("--slope", e.slope, "Tangent of the bed's angle");
+  number("--depth", e.depth, "Of the water above the bed, m");
+  number("--width", e.width, "Between side walls, m (default: periodic across the stream)");
+  number("--layers", e.layers, "Thickness of the bed in diameters");
+  number("--density", e.density, "Of the grains, kg/m^3");
+  number("--fluid-density", e.fluid_density, "kg/m^3");
+  number("--viscosity", e.viscosity, "Kinematic, m^2/s");
+  add->add_option("--accuracy", e.accuracy, "look: 6 cells across the smallest grain, measure: 10, publish: 15")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Accuracy>{
+          {"look", Accuracy::look}, {"measure", Accuracy::measure}, {"publish", Accuracy::publish}}))
+      ->type_name("look|measure|publish");
+  number("--cores", e.cores, "At hand");
+  number("--hours", e.hours, "At hand; the box is made smaller for them");
+  add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 
 // Refuses option values that CLI11 accepts but that have no meaning.
@@ -186,12 +218,14 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   add_run(app, command, texts);
+  add_new(app, command, texts);
   add_others(app, command);
   try {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     refuse_nonsense(app, command);
     if (!texts.walltime.empty()) command.walltime = parse_walltime(texts.walltime);
+    if (!texts.sieve.empty()) command.experiment.sieve = parse_sieve(texts.sieve);
     if (command.kind == Command::Kind::info) take_info_paths(command);
     if (!texts.layout.empty()) command.layout = parse_layout(texts.layout);
   } catch (const CLI::Success& asked) {

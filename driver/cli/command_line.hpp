@@ -3,6 +3,7 @@
 
 #include "core/base/types.hpp"
 #include "driver/cost/performance_model.hpp"
+#include "driver/plan/new_case.hpp"
 
 #include <optional>
 #include <string>
@@ -11,7 +12,7 @@
 namespace thalweg::driver {
 
 struct Command {
-  enum class Kind { run, check, defaults, info, stop } kind = Kind::run;
+  enum class Kind { run, check, create, defaults, info, stop } kind = Kind::run;
   std::string path;                   // CASE.yaml of run and check; run folder of stop, or checkpoint of info
   std::vector<std::string> runs;      // of info: with --csv any number, else only `path`
   std::string system;                 // of defaults, or section; empty: resolved
@@ -26,6 +27,9 @@ struct Command {
   std::vector<int> ranks;  // of check: numbers of ranks to plan for
   Network network;         // the same: between them
   bool csv = false;        // of info
+  bool json = false;       // of check and info
+  bool solve = false;      // of check
+  Experiment experiment;   // of create
   std::string line;        // the command as given
 };
 

@@ -45,7 +45,6 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
                          bandwidth * 1e-9, bytes, identity.memory_bound_mlups));
   }
   std::vector<std::string> all = warnings(c);
-  for (const std::string& warning : warnings_of_plan(c)) all.push_back(warning);
   if (const std::string warning = crowding_warning(communicator); !warning.empty()) all.push_back(warning);
   for (const std::string& warning : all) log.line("warning: " + warning);
   identity.warnings = static_cast<std::int64_t>(all.size());

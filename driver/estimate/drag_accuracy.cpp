@@ -99,7 +99,7 @@ std::string drag_text(const Case& c) {
   const bool tabled =
       c.fluid.subgrid().model() == lbm::SubgridModel::qr && lbm::traits_of(c.fluid.collision).is_trt_near_bodies;
   if (tabled && reynolds >= tabled_reynolds[0])
-    return fmt::format("of a grain alone in a stream about {:.2g} % too large {}",
+    return fmt::format("of a grain alone in a stream about {:.0f} % too large {}",
                        100.0 * stream_drag_error(cells, reynolds), where);
   if (reynolds < 500.0)
     return fmt::format("{} in slow flow, {}; nothing is validated between 10 and {}", slow_text(c, cells), where,

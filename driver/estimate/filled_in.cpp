@@ -2,12 +2,14 @@
 
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace thalweg::driver {
@@ -50,6 +52,21 @@ double suitable_time_step(const Case& c) {
   return std::stod(at_most_text(longest, 2));
 }
 
+namespace {
+
+// The step, and contacts that last as long as it asks for or, where they would overlap too far, a step that suits them.
+void fill_in_step(Case& c) {
+  if (!c.filled_in.time_step) return fill_in_contacts(c);
+  c.fluid.time_step = suitable_time_step(c);
+  fill_in_contacts(c);
+  const std::optional<ReboundTimes> times = rebound_times(c);
+  if (!has_default_duration(c) || !times || times->contact >= times->around) return;
+  c.fluid.time_step = std::stod(at_most_text(*c.fluid.time_step * times->contact / times->around, 3));
+  fill_in_contacts(c);
+}
+
+}  // namespace
+
 void complete(Case& c) {
   if (has_fluid(c)) {
     c.filled_in.time_step = !c.fluid.time_step;
@@ -59,14 +76,13 @@ void complete(Case& c) {
     if (c.filled_in.time_step) c.fluid.time_step = suitable_time_step(c);
   }
   if (has_grains(c.system)) complete_contacts(c);
+  if (has_fluid(c)) fill_in_step(c);
 }
 
 void fill_in(Case& c) {
-  if (has_fluid(c)) {
-    fill_in_profile(c);
-    if (c.filled_in.time_step) c.fluid.time_step = suitable_time_step(c);
-  }
-  fill_in_contacts(c);
+  if (!has_fluid(c)) return fill_in_contacts(c);
+  fill_in_profile(c);
+  fill_in_step(c);
 }
 
 }  // namespace thalweg::driver

@@ -15,6 +15,7 @@
 #include "driver/plan/drive_warnings.hpp"
 #include "driver/plan/plan_warnings.hpp"
 #include "driver/plan/remedy.hpp"
+#include "driver/plan/unit_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -282,6 +283,31 @@ Warnings fast_model_fluid(const Case& c) {
          {}}}}};
 }
 
+// With one relaxation time water hardly seeps through a bed: speed over the right one in random beds, by cells across a
+// grain, with tau - 1/2 below 0.001 (benchmarks/validation/seepage).
+double seepage_speed(double cells) {
+  constexpr double few = 6.25, some = 10.0, many = 16.0;
+  constexpr double with_few = 0.005, with_some = 0.084, with_many = 0.47;
+  const auto between = [cells](double from, double with_from, double to, double with_to) {
+    return with_from * std::pow(with_to / with_from, (cells - from) / (to - from));
+  };
+  if (cells > many) return 1.0;
+  return cells < few    ? with_few
+         : cells < some ? between(few, with_few, some, with_some)
+                        : between(some, with_some, many, with_many);
+}
+
+Warnings slow_seepage(const Case& c) {
+  constexpr std::int64_t fewest_grains = 20;  // that make a bed
+  if (c.fluid.collision != lbm::CollisionModel::bgk || relaxation_time(c) - 0.5 > 1e-3 ||
+      grain_count(c) < fewest_grains)
+    return {};
+  const double speed = seepage_speed(smallest_diameter(c) / c.domain.spacing);
+  if (speed >= 1.0) return {};
+  return {{fmt::format("With bgk water seeps through a dense bed at about {:.1g} of the right speed", speed),
+           {{{collision_change("trt_at_bodies", lbm::CollisionModel::trt_at_bodies)}, {}}}}};
+}
+
 Warnings of_sentences(const std::vector<std::string>& sentences) { return {sentences.begin(), sentences.end()}; }
 
 Warnings observer_warnings(const Case& c) { return of_sentences(warnings(c.analysis.observers, run_context(c))); }
@@ -292,45 +318,25 @@ Warnings with_fluid(const Case& c) {
   return has_fluid(c) ? rule(c) : Warnings{};
 }
 
-// Rules for the case, for its plan and for rebounds, in this order.
-const std::vector<WarningRule> case_rules{observer_warnings,
-                                          drives,
-                                          fast_model_fluid,
-                                          overlap_warnings,
-                                          sliding_bed,
-                                          with_fluid<fast_flow>,
-                                          with_fluid<compression>,
-                                          with_fluid<unstable_collision>,
-                                          with_fluid<long_relaxation>,
-                                          with_fluid<unmapped_relaxation>,
-                                          with_fluid<bulk_relaxation>,
-                                          with_fluid<laminar_flow>,
-                                          large_solids,
-                                          absent_solids,
-                                          with_fluid<coarse_cells>,
-                                          with_fluid<floating_grains>,
-                                          with_fluid<inexact_links>};
-
+// By weight: case_warnings.hpp.
 std::vector<WarningRule> all_rules() {
-  std::vector<WarningRule> rules = case_rules;
+  std::vector<WarningRule> rules = unit_rules();
+  for (const WarningRule rule :
+       {drives, large_solids, absent_solids, with_fluid<floating_grains>, sliding_bed, with_fluid<fast_flow>,
+        with_fluid<compression>, with_fluid<unstable_collision>, with_fluid<long_relaxation>,
+        with_fluid<unmapped_relaxation>, with_fluid<bulk_relaxation>, fast_model_fluid, with_fluid<laminar_flow>,
+        with_fluid<coarse_cells>, with_fluid<slow_seepage>, with_fluid<inexact_links>, overlap_warnings,
+        rebound_warnings, observer_warnings})
+    rules.push_back(rule);
   const std::vector<WarningRule> plan = plan_rules();
   rules.insert(rules.end(), plan.begin(), plan.end());
-  rules.push_back(rebound_warnings);
   return rules;
 }
 
 }  // namespace
 
-std::vector<std::string> warnings(const Case& c) {
-  return ConsistentRemedies(c, all_rules()).sentences(0, case_rules.size());
-}
+std::vector<std::string> warnings(const Case& c) { return ConsistentRemedies(c, all_rules()).sentences(); }
 
-std::vector<std::string> warnings_of_plan(const Case& c) {
-  return ConsistentRemedies(c, all_rules()).sentences(case_rules.size(), all_rules().size() - 1);
-}
-
-std::vector<std::string> remarks_on_rebound(const Case& c) {
-  return ConsistentRemedies(c, all_rules()).sentences(all_rules().size() - 1, all_rules().size());
-}
+Remedy first_remedy(const Case& c) { return ConsistentRemedies(c, all_rules()).first(); }
 
 }  // namespace thalweg::driver

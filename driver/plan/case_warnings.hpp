@@ -1,20 +1,18 @@
 // Warnings: settings that are valid but questionable.
 #pragma once
 
-#include "driver/case/case.hpp"
+#include "driver/plan/remedy.hpp"
 
 #include <string>
 #include <vector>
 
 namespace thalweg::driver {
 
-// Whole sentences.
+// Whole sentences, those first that spoil most: numbers in other units, what drives the flow, what breaks down, what is
+// not resolved, and at last how the run is planned.
 std::vector<std::string> warnings(const Case& c);
 
-// Warnings about the start and the length of the run, for `thalweg check`.
-std::vector<std::string> warnings_of_plan(const Case& c);
-
-// Remarks on grains that rebound too weakly in the fluid, for a line of `thalweg check`.
-std::vector<std::string> remarks_on_rebound(const Case& c);
+// The changes that the first of the warnings with a consistent remedy asks for; empty: none has one.
+Remedy first_remedy(const Case& c);
 
 }  // namespace thalweg::driver

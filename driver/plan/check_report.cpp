@@ -11,12 +11,16 @@
 #include "driver/cost/disk_space.hpp"
 #include "driver/cost/memory.hpp"
 #include "driver/cost/run_cost.hpp"
+#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
+#include "driver/estimate/drag_accuracy.hpp"
+#include "driver/estimate/flow_estimate.hpp"
 #include "driver/plan/case_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/initial_state.hpp"
+#include "io/files/json_object.hpp"
 #include "loop/progress.hpp"
 
 #include <fmt/format.h>
@@ -78,28 +82,6 @@ std::string restitution_text(const Case& c) {
                      range_text(dry->least_at_wall, dry->most_at_wall));
 }
 
-// Seepage with a single relaxation time, which is far too slow: computed over correct speed in random beds by cells per
-// diameter, for tau - 1/2 below 0.001 (benchmarks/validation/seepage).
-void add_seepage(const Case& c, Lines& lines) {
-  constexpr double few = 6.25, some = 10.0, many = 16.0;
-  constexpr double with_few = 0.005, with_some = 0.084, with_many = 0.47;
-  constexpr std::int64_t fewest_grains = 20;  // that make a bed
-  const double cells = smallest_diameter(c) / c.domain.spacing;
-  if (c.fluid.collision != lbm::CollisionModel::bgk || relaxation_time(c) - 0.5 > 1e-3 ||
-      grain_count(c) < fewest_grains || cells > many)
-    return;
-  const auto between = [cells](double from, double with_from, double to, double with_to) {
-    return with_from * std::pow(with_to / with_from, (cells - from) / (to - from));
-  };
-  const double speed = cells < few    ? with_few
-                       : cells < some ? between(few, with_few, some, with_some)
-                                      : between(some, with_some, many, with_many);
-  lines.push_back(fmt::format(
-      "seepage    through a dense bed {} {:.1g} of the right speed with bgk: for more than half of it consider "
-      "fluid.collision: trt_at_bodies",
-      cells < few ? "at most" : "about", speed));
-}
-
 // Contact duration, and the stiffness derived from it if the case omits it.
 std::string duration_text(const Case& c) {
   const double shortest = shortest_contact(c);
@@ -158,8 +140,6 @@ void add_grains(const Case& c, Lines& lines) {
   lines.push_back(
       fmt::format("flight     a grain moves a fiftieth of a cell a step at {:.3g} m/s; faster grains are less accurate",
                   0.02 * units_of(c).velocity()));
-  for (const std::string& weak : remarks_on_rebound(c)) lines.push_back("rebound    " + weak);
-  add_seepage(c, lines);
 }
 
 void add_solids(const Case& c, Lines& lines) {
@@ -244,6 +224,14 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
       loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
+std::string verdict_text(const Case& c, std::size_t warnings) {
+  if (warnings > 0)
+    return fmt::format("{} warning{}, the gravest first: mend the case before you trust its results (check --solve)",
+                       warnings, warnings == 1 ? "" : "s");
+  const std::string drag = drag_text(c);
+  return "no warning" + (drag.empty() ? std::string() : "; what the cells leave: drag " + drag + " (docs/accuracy.md)");
+}
+
 using LightestGrains = std::vector<dem::LightestGrain>;  // by material
 
 // Lightest grains that the case places. Throws InputError if they do not fit.
@@ -300,9 +288,46 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   append(bed_lines(c), lines);
   add_model_fluid(c, lines);
   add_cost(c, bandwidth, lines);
-  for (const std::string& warning : warnings(c)) lines.push_back("warning    " + warning);
-  for (const std::string& warning : warnings_of_plan(c)) lines.push_back("warning    " + warning);
+  const std::vector<std::string> found = warnings(c);
+  for (const std::string& warning : found) lines.push_back("warning    " + warning);
+  lines.push_back("verdict    " + verdict_text(c, found.size()));
   return lines;
+}
+
+std::string check_json(const Case& c, double bandwidth) {
+  const std::vector<std::string> lines = check_report(c, bandwidth);
+  io::JsonObject figures, units, all;
+  const auto add = [&](const char* name, const char* unit, double value) {
+    figures.set(name, value);
+    units.set(name, unit);
+  };
+  if (c.system != SystemKind::continuum) {
+    const Cost cost = cost_of(c, bandwidth);
+    add("cells", "1", cost.cells);
+    add("grains", "1", static_cast<double>(grain_count(c)));
+    add("steps", "1", cost.steps);
+    add("core_seconds", "s", cost.core_seconds);
+    add("memory", "B", memory_on_one_rank(c));
+    add("disk", "B", disk_space(c).total());
+  }
+  if (has_fluid(c)) {
+    const FlowEstimate flow = flow_estimate(c);
+    const FlowNumbers numbers = flow_numbers(c);
+    add("time_step", "s", fluid_time_step(c));
+    add("relaxation_time", "1", relaxation_time(c));
+    add("largest_velocity", "m/s", flow.speed);
+    add("largest_lattice_velocity", "1", flow.speed / units_of(c).velocity());
+    add("friction_velocity", "m/s", flow.friction_velocity);
+    add("development_time", "s", flow.spin_up);
+    add("bed_height", "m", numbers.bed_height);
+    add("depth", "m", numbers.depth);
+    add("slope", "1", numbers.slope);
+    add("shields_number", "1", numbers.shields_hydraulic);
+    add("galileo_number", "1", numbers.galileo);
+  }
+  all.set("name", c.name).set("system", name_of(c.system)).set("figures", figures).set("units", units);
+  const std::vector<std::string> found = c.system == SystemKind::continuum ? Lines{} : warnings(c);
+  return all.set("report", lines).set("warnings", found).text() + "\n";
 }
 
 }  // namespace thalweg::driver

@@ -12,4 +12,7 @@ namespace thalweg::driver {
 // be run (grains that do not fit, a grain step too long for the contacts).
 std::vector<std::string> check_report(const Case& c, double bandwidth);
 
+// The same for programs: a JSON object of the figures behind the lines, their units, the lines and the warnings.
+std::string check_json(const Case& c, double bandwidth);
+
 }  // namespace thalweg::driver

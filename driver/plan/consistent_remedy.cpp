@@ -34,11 +34,19 @@ ConsistentRemedies::ConsistentRemedies(const Case& c, std::vector<WarningRule> r
   for (const WarningRule rule : rules_) found_.push_back(rule(c));
 }
 
-std::vector<std::string> ConsistentRemedies::sentences(std::size_t first, std::size_t last) const {
+std::vector<std::string> ConsistentRemedies::sentences() const {
   std::vector<std::string> sentences;
-  for (std::size_t rule = first; rule < last; ++rule)
+  for (std::size_t rule = 0; rule < rules_.size(); ++rule)
     for (const Warning& warning : found_[rule]) sentences.push_back(sentence_of(warning, rule));
   return sentences;
+}
+
+Remedy ConsistentRemedies::first() const {
+  for (std::size_t rule = 0; rule < rules_.size(); ++rule)
+    for (const Warning& warning : found_[rule])
+      for (const Advice& advice : warning.advice)
+        if (std::optional<Remedy> remedy = useful(advice, rule)) return *remedy;
+  return {};
 }
 
 std::string ConsistentRemedies::sentence_of(const Warning& warning, std::size_t rule) const {
@@ -46,8 +54,7 @@ std::string ConsistentRemedies::sentence_of(const Warning& warning, std::size_t 
   std::string remedies;
   std::vector<Remedy> said;
   for (const Advice& advice : warning.advice) {
-    std::optional<Remedy> remedy = completed(advice.remedy, rule, most_rounds);
-    if (remedy) std::erase_if(*remedy, [&](const Change& change) { return changed(case_, {change}) == case_; });
+    const std::optional<Remedy> remedy = useful(advice, rule);
     if (!remedy || std::any_of(said.begin(), said.end(), [&](const Remedy& one) { return has_all(*remedy, one); }))
       continue;
     remedies += (remedies.empty() ? "" : ", or ") + advice.lead + text_of(*remedy);
@@ -55,6 +62,12 @@ std::string ConsistentRemedies::sentence_of(const Warning& warning, std::size_t 
   }
   if (remedies.empty()) remedies = warning.otherwise;
   return warning.sentence + (remedies.empty() ? "." : ": consider " + remedies + ".");
+}
+
+std::optional<Remedy> ConsistentRemedies::useful(const Advice& advice, std::size_t rule) const {
+  std::optional<Remedy> remedy = completed(advice.remedy, rule, most_rounds);
+  if (remedy) std::erase_if(*remedy, [&](const Change& change) { return changed(case_, {change}) == case_; });
+  return remedy;
 }
 
 std::optional<Remedy> ConsistentRemedies::completed(const Remedy& remedy, std::size_t rule, int rounds) const {

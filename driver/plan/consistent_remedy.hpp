@@ -18,11 +18,16 @@ class ConsistentRemedies {
 public:
   ConsistentRemedies(const Case& c, std::vector<WarningRule> rules);
 
-  // The warnings of the rules of these numbers, whole sentences with those of their remedies after which the case is
+  // The warnings of the rules in their order, whole sentences with those of their remedies after which the case is
   // accepted, the warning gone and none of another rule new.
-  std::vector<std::string> sentences(std::size_t first, std::size_t last) const;
+  std::vector<std::string> sentences() const;
+
+  // The first of these remedies; empty: there is none.
+  Remedy first() const;
 
 private:
+  std::optional<Remedy> useful(const Advice& advice,
+                               std::size_t rule) const;  // completed, without what changes nothing
   std::string sentence_of(const Warning& warning, std::size_t rule) const;
   std::optional<Remedy> completed(const Remedy& remedy, std::size_t rule, int rounds) const;
 

@@ -129,8 +129,10 @@ Warnings overlap_warnings(const Case& c) {
 Warnings rebound_warnings(const Case& c) {
   const std::optional<ReboundTimes> times = rebound_times(c);
   if (!times || times->contact >= times->around) return {};
-  return {{fmt::format("too weak: a contact lasts {} fluid steps, less than the {} that sound takes around a grain",
-                       at_most_text(times->contact, 3), at_least_text(times->around, 3)),
+  return {{fmt::format(
+               "Grains rebound too weakly: a contact lasts {} fluid steps, less than the {} that sound takes around a "
+               "grain",
+               at_most_text(times->contact, 3), at_least_text(times->around, 3)),
            {{suitable_contact(c), {}}},
            "finer cells with a shorter step, and a softer contact"}};
 }

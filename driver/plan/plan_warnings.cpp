@@ -3,8 +3,13 @@
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/reference_grain.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
 
 namespace thalweg::driver {
 
@@ -75,6 +80,63 @@ Warnings short_run(const Case& c) {
            advice, "a later run.until or a developed start (initial)"}};
 }
 
+// s, from which on the flow is that of its drive: from rest once it has developed, from a profile after one turnover of
+// the largest eddies.
+double developed_after(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none || c.initial.takes(InitialField::fluid)) return 0.0;
+  if (!starts_developed(c)) return flow.spin_up;
+  return flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
+}
+
+Warnings early_averages(const Case& c) {
+  const double developed = developed_after(c);
+  if (developed >= c.run.until) return {};  // short_run() says so
+  Remedy later;
+  std::string early;
+  c.analysis.observers.for_each([&](const auto& keys) {
+    using Keys = typename std::decay_t<decltype(keys)>::value_type;
+    if constexpr (requires { keys->from; } && !std::is_same_v<Keys, analysis::EntrainmentKeys>) {  // events have times
+      if (!keys || keys->from >= developed * (1.0 - 1e-9)) return;
+      early += fmt::format("{}analysis.{}.from: {:g}", early.empty() ? "" : ", ", Keys::section, keys->from);
+      later.push_back(number_change(fmt::format("analysis.{}.from", Keys::section), developed, 2, Rounding::up,
+                                    [](Case& other, double to) { other.analysis.observers.of<Keys>()->from = to; }));
+    }
+  });
+  if (later.empty()) return {};
+  return {
+      {fmt::format("Averages begin before the flow has developed, which takes about {:.2g} s ({})", developed, early),
+       {{later, {}}},
+       "later ones and a longer run"}};
+}
+
+// s, in which the highest grains of a population reach the bed.
+double settling_time(const Case& c, const beds::Population& grains) {
+  const double highest = grains.placement.region ? grains.placement.region->upper.z() : c.domain.size.z();
+  const double fall = std::max(0.0, highest - settled_height(c)), gravity = -gravity_vector(c.gravity).z();
+  if (!has_fluid(c)) return std::sqrt(2.0 * fall / gravity);
+  return fall /
+         settling_velocity(grains.diameter, grains.density / c.fluid.density, gravity, c.fluid.kinematic_viscosity);
+}
+
+Warnings unsettled_grains(const Case& c) {
+  const bool falls = gravity_vector(c.gravity).z() < 0.0 && !periodic_axes(c.domain)[2];
+  if (!(c.system == SystemKind::resolved || c.system == SystemKind::grains) || c.grains.empty() || !falls || c.disks ||
+      settled_height(c) < reference_grain(c).diameter)
+    return {};
+  double longest = 0.0;
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held() && !grains.from_file() && !c.initial.takes(InitialField::grains) &&
+        grains.placement.positions.empty() &&
+        (!has_fluid(c) || grains.density > (1.0 + neutral_density) * c.fluid.density))
+      longest = std::max(longest, settling_time(c, grains));
+  if (longest <= c.run.until) return {};
+  return {{fmt::format("The highest grains fall for about {:.2g} s, and the run ends before, at {:g} s", longest,
+                       c.run.until),
+           {{{until_change(longest)}, {}}},
+           "a later run.until"}};
+}
+
 Warnings other_start(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
@@ -94,6 +156,8 @@ Warnings other_start(const Case& c) {
 
 }  // namespace
 
-std::vector<WarningRule> plan_rules() { return {frequent_output, long_ramp, short_run, other_start}; }
+std::vector<WarningRule> plan_rules() {
+  return {short_run, early_averages, unsettled_grains, other_start, long_ramp, frequent_output};
+}
 
 }  // namespace thalweg::driver

@@ -63,6 +63,13 @@ JsonObject& JsonObject::set(const std::string& name, const std::vector<double>& 
   return put(name, list, list);
 }
 
+JsonObject& JsonObject::set(const std::string& name, const std::vector<std::string>& values) {
+  std::vector<std::string> texts;
+  for (const std::string& value : values) texts.push_back(json_text(value));
+  const std::string list = fmt::format("[{}]", fmt::join(texts, ", "));
+  return put(name, list, list);
+}
+
 std::string JsonObject::line() const {
   std::vector<std::string> parts;
   for (const Entry& entry : entries_) parts.push_back(json_text(entry.name) + ": " + entry.line);

@@ -21,6 +21,7 @@ public:
   JsonObject& set(const std::string& name, const char* value) { return set(name, std::string(value)); }
   JsonObject& set(const std::string& name, const JsonObject& value);
   JsonObject& set(const std::string& name, const std::vector<double>& values);
+  JsonObject& set(const std::string& name, const std::vector<std::string>& values);
 
   std::string line() const;                             // on one line
   std::string text() const;                             // indented, one entry a line

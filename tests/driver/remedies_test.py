@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the warning is gone, no other is new,
-and what the remedy does not name is as it was.
+"""What --solve prints, and every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the warning is
+gone, no other is new, and what the remedy does not name is as it was.
 
 Called by ctest: remedies_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -152,10 +153,18 @@ VARIATIONS = [
     (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]),
     (WATER, [*CLEAR, "run.until=1"], ["too short"]),
     (DRY, ["gravity.slope=0.6"], ["slides as a whole"]),
+    (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),   # tan(26 degrees)
+    (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
+    (WATER, ["analysis={grain_profiles: {from: 0.1}}"], ["Averages begin before the flow has developed"]),
+    (WATER, ["fluid.time_step=null"], []),
+    (OIL, ["grains.0.placement.region={lower: [0, 0, 0], upper: [0.02, 0.01, 0.02]}", "run.until=0.01"], []),
     (DRY, ["contact.normal_stiffness=30", "grains.1.contact.normal_stiffness=20", "run.time_step=2.8e-5"], ["would overlap"]),
     (DRY, ["grains.0.placement.pattern=uniform", "grains.0.count=600"], ["fewer or smaller grains"]),
     (MODEL_FLUID, ["run.time_step=1.3e-3", "model_fluid.shields_number=2000"], ["a twentieth of a diameter"]),
 ]
+
+# Warnings whose remedy is for the user to choose: what drives the flow, and what is measured when.
+BY_HAND = ("Gravity drives", "The box is periodic", "Walls close", "The mean", "Means of")
 
 KEY = r"(?<![\w.])((?:[a-z_]+\.)+[a-z0-9_.]*[a-z0-9_]): (\{[^}]*\}|\[[^\]]*\]|[^\s,]+)"
 
@@ -175,14 +184,14 @@ def kind_of(sentence):
 
 
 class Report:
-    """What check said: its warnings by kind, among them that of rebounds, or its refusal."""
+    """What check said: its warnings by kind, or its refusal."""
 
     def __init__(self, result):
         self.accepted = result.returncode == 0
         self.text = result.stdout + result.stderr
         lines = [re.split(r"  +", line, maxsplit=1) for line in result.stdout.splitlines()]
         self.lines = [(line[0], line[1]) for line in lines if len(line) == 2]
-        self.warnings = [text for name, text in self.lines if name in ("warning", "rebound")]
+        self.warnings = [text for name, text in self.lines if name == "warning"]
         if not self.accepted:
             self.warnings = [result.stderr]
         self.kinds = sorted(kind_of(warning) for warning in self.warnings)
@@ -251,7 +260,22 @@ class Remedies(ProgramTest):
                 with self.subTest(case=path.parent.name, settings=settings, remedy=pairs):
                     self.apply(path, settings, warning, pairs, before)
                     count += 1
+        if before.accepted:
+            self.solve(path, settings)
         return count
+
+    def solve(self, path, settings):
+        """The changes that --solve prints, together, leave only the warnings that it says they leave."""
+        words = [word for setting in settings for word in ("--set", setting)]
+        solution = Report(self.thalweg("check", path, *words, "--solve"))
+        self.assertTrue(solution.accepted, solution.text)
+        pasted = shlex.split(solution.all("to try")[0])[3:] if solution.all("to try") else []
+        after = Report(self.thalweg("check", path, *words, *pasted))
+        self.assertTrue(after.accepted, after.text)
+        self.assertEqual(after.kinds, solution.kinds, f"{pasted}\n{after.text}")
+        for warning in after.warnings:
+            if not warning.startswith(BY_HAND):
+                self.assertEqual(remedies_in(warning), [], "a remedy that was not taken")
 
     def test_of_shipped_cases(self):
         applied = 0

@@ -108,19 +108,32 @@ TEST(Case, StabilityFollowsTheMap) {
   EXPECT_EQ(stable_lattice_velocity(lbm::CollisionModel::trt_at_bodies, 0.003), 0.05);
 }
 
-TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
+// The same with contacts that last as long as sound takes around a grain, for half a minute.
+Case lasting_contacts() {
   Case c = wide_bed();
+  c.domain.size.z() = std::round(c.domain.size.z() / c.domain.spacing) * c.domain.spacing;
+  c.contact.normal_stiffness = 2700.0;
   c.run.until = 30.0;
+  return c;
+}
+
+TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
+  Case c = lasting_contacts();
   c.analysis.observers.of<analysis::TransportRateKeys>() = {20.0, 0.0};
   EXPECT_TRUE(warnings(c).empty());  // 0.94 m/s are 0.038 cells a step
   c.fluid.time_step = 1e-4;          // 0.19 cells a step
   c.fluid.subgrid_model = lbm::SubgridModel::none;
   c.domain.spacing = 1e-3;  // 5 cells a diameter, and 0.094 cells a step
   c.run.until = 10.0;       // before the mean begins
-  ASSERT_EQ(warnings(c).size(), 3u);
-  EXPECT_NE(warnings(c)[0].find("mean transport rate begins at 20 s, after the end"), std::string::npos);
-  EXPECT_NE(warnings(c)[1].find("subgrid"), std::string::npos);
-  EXPECT_NE(warnings(c)[2].find("only 5 cells across"), std::string::npos);
+  const std::vector<std::string> found = warnings(c);
+  const auto place_of = [&found](const char* words) {
+    std::size_t n = 0;
+    while (n < found.size() && found[n].find(words) == std::string::npos) ++n;
+    return n;
+  };
+  EXPECT_LT(place_of("subgrid"), place_of("only 5 cells across"));  // the gravest first
+  EXPECT_LT(place_of("only 5 cells across"), place_of("mean transport rate begins at 20 s, after the end"));
+  EXPECT_LT(place_of("mean transport rate begins at 20 s, after the end"), found.size());
 }
 
 TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
@@ -144,8 +157,7 @@ TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
 }
 
 TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
-  Case c = wide_bed();
-  c.run.until = 30.0;
+  Case c = lasting_contacts();
   c.fluid.collision = lbm::CollisionModel::trt;
   c.fluid.subgrid_model = lbm::SubgridModel::none;
   const std::size_t without = warnings(c).size();
@@ -155,7 +167,7 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   EXPECT_TRUE(warnings(c).empty());
   c.fluid.subgrid_model = lbm::SubgridModel::none;
   c.fluid.collision = lbm::CollisionModel::bgk;
-  EXPECT_EQ(warnings(c).size(), without);
+  for (const std::string& warning : warnings(c)) EXPECT_EQ(warning.find("bulk relaxation"), std::string::npos);
 }
 
 // The drag of dense arrays is off by tens of percent where it depends on the relaxation time
@@ -184,17 +196,20 @@ TEST(Case, WarnsOfLinksWhoseDragDependsOnTheViscosity) {
 
 // docs/stability.md: at tau - 1/2 = 0.003 a stream is stable up to 0.10 cells a step with three steps, 0.16 with one.
 TEST(Case, WarnsOfABulkViscosityThatMakesAFastStreamUnstable) {
-  Case c = wide_bed();
-  c.run.until = 30.0;
+  Case c = lasting_contacts();
   c.fluid.bulk_relaxation_time = 3.0;
   const double a_cell_a_step = c.domain.spacing / flow_estimate(c).speed;
+  const auto grows = [&c] {
+    for (const std::string& warning : warnings(c))
+      if (warning.find("grows stripes") != std::string::npos) return true;
+    return false;
+  };
   c.fluid.time_step = 0.09 * a_cell_a_step;
-  EXPECT_TRUE(warnings(c).empty());
+  EXPECT_FALSE(grows());
   c.fluid.time_step = 0.099 * a_cell_a_step;
-  ASSERT_EQ(warnings(c).size(), 1u);
-  EXPECT_NE(warnings(c)[0].find("grows stripes"), std::string::npos);
+  EXPECT_TRUE(grows());
   c.fluid.bulk_relaxation_time = 1.0;
-  EXPECT_TRUE(warnings(c).empty());
+  EXPECT_FALSE(grows());
 }
 
 }  // namespace
