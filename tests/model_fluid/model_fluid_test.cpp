@@ -92,7 +92,7 @@ struct Packing {
           n, radii[n % 2], 1.0, Motion::free,
           Vec3(box.size[0] * uniform(random), disks ? 0.5 : box.size[1] * uniform(random), 4.0 * uniform(random)));
     store.owned = store.total();
-    moving.load(store, std::vector<Vec3>(store.total(), Vec3::Zero()));
+    moving.gather_from(store, std::vector<Vec3>(store.total(), Vec3::Zero()));
     parameters = {radii[0], 2.0 * radii[0], 0.01, disks, true};
   }
 
@@ -136,7 +136,7 @@ struct Packing {
 void lift_above_floor(Packing& packing) {
   for (std::size_t s = 0; s < packing.store.total(); ++s)
     packing.store.position[s].z() = std::max(packing.store.position[s].z(), packing.store.radius[s]);
-  packing.moving.load(packing.store, std::vector<Vec3>(packing.store.total(), Vec3::Zero()));
+  packing.moving.gather_from(packing.store, std::vector<Vec3>(packing.store.total(), Vec3::Zero()));
 }
 
 // Of evenly spread points the count of a sphere's share errs by about points^(-2/3) = 1e-4 of it, and a dozen spheres
@@ -168,7 +168,7 @@ TEST(LocalSolidFraction, FollowsTheGrainsToATolerance) {
   std::uniform_real_distribution<double> uniform(-0.008, 0.008);
   for (int step = 0; step < 20; ++step) {
     for (std::size_t s = 0; s < packing.moving.size(); s += 3)
-      packing.moving[s].position += row_of(Vec3(uniform(random), uniform(random), uniform(random)));
+      packing.moving[s].position += double4(Vec3(uniform(random), uniform(random), uniform(random)));
     fraction.update(packing.moving, Clumps(), packing.store);
   }
   Packing fresh(false);
@@ -177,7 +177,7 @@ TEST(LocalSolidFraction, FollowsTheGrainsToATolerance) {
     const Vec3 now = vector_of(packing.moving[s].position);
     EXPECT_LE((now - fresh.store.position[s]).norm(), packing.parameters.tolerance * (1.0 + 1e-12));
   }
-  fresh.moving.load(fresh.store, std::vector<Vec3>(fresh.store.total(), Vec3::Zero()));
+  fresh.moving.gather_from(fresh.store, std::vector<Vec3>(fresh.store.total(), Vec3::Zero()));
   LocalSolidFraction again(fresh.box, fresh.parameters);
   again.find_neighbours(fresh.store, 0.5, Clumps());
   again.update(fresh.moving, Clumps(), fresh.store);
