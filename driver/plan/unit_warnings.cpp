@@ -11,10 +11,10 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5;     // m; a bed of larger ones in a resolved flow is a bed in millimetres
-constexpr double lightest_solid = 30.0;     // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
-constexpr double roughest_contact = 1.5;    // 1; friction of dry solids is below, an angle in degrees above
-constexpr int digits_kept = 6;
+constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
+constexpr double lightest_solid = 30.0;   // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
+constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
+constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
 Warnings lengths_in_millimetres(const Case& c) {
@@ -32,10 +32,10 @@ Warnings densities_in_grams(const Case& c) {
   if (c.system != SystemKind::resolved) return found;  // others may be dimensionless
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (const double density = c.grains[n].density; density < lightest_solid) {
-      Remedy remedy{exact_change(fmt::format("grains.{}.density", n), 1000.0 * density, digits_kept,
+      Remedy remedy{exact_change(fmt::format("grains.{}.density", n), 1000.0 * density, density_digits,
                                  [n](Case& other, double to) { other.grains[n].density = to; })};
       if (c.fluid.density < lightest_solid)
-        remedy.push_back(exact_change("fluid.density", 1000.0 * c.fluid.density, digits_kept,
+        remedy.push_back(exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
                                       [](Case& other, double to) { other.fluid.density = to; }));
       found.push_back({fmt::format("Grains of {:g} kg/m^3 (grains.{}) look like {:g} g/cm^3, which are {:g} kg/m^3",
                                    density, n, density, 1000.0 * density),

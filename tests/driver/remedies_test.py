@@ -164,7 +164,7 @@ VARIATIONS = [
 ]
 
 # Warnings whose remedy is for the user to choose: what drives the flow, and what is measured when.
-BY_HAND = ("Gravity drives", "The box is periodic", "Walls close", "The mean", "Means of")
+BY_HAND = ("Gravity drives", "The box is periodic", "Walls close", "The mean")
 
 KEY = r"(?<![\w.])((?:[a-z_]+\.)+[a-z0-9_.]*[a-z0-9_]): (\{[^}]*\}|\[[^\]]*\]|[^\s,]+)"
 
