@@ -163,4 +163,4 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
 
 
 if __name__ == "__main__":
-    program.main()
+    program.main(side_by_side=True)

@@ -151,7 +151,8 @@ class ProgramTest(unittest.TestCase):
 
 
 class SideBySide:
-    """Runner of unittest.main() that runs four tests at a time: for tests that mostly wait."""
+    """Runner of unittest.main() that runs four tests at a time: for tests that mostly wait. Not for long runs on several ranks,
+    which are far slower where they share their cores."""
     def run(self, suite):
         def flat(tests):
             return [one for test in tests for one in (flat(test) if isinstance(test, unittest.TestSuite) else [test])]

@@ -209,4 +209,4 @@ run: {until: 0.01}
 
 
 if __name__ == "__main__":
-    program.main()
+    program.main(side_by_side=True)
