@@ -1,4 +1,4 @@
-// Brings the rows of bed files to the ranks that need them when a run begins.
+// Redistribution of the rows of bed files to the ranks that need them when a run begins.
 #pragma once
 
 #include "beds/packing/packing_domain.hpp"
@@ -12,14 +12,14 @@
 
 namespace thalweg::beds {
 
-// The centre (m) of the grain or clump that some rows make.
+// Centre (m) of the grain or clump that some rows make.
 using CentreOf = std::function<Vec3(std::span<const BedGrain> body)>;
 
-// Of a population from a file, in the order of the file: the rows of the grains and clumps whose centre is in the part
-// of the box that this rank knows; all rows, where they move as one body. Needs several ranks. Collective.
+// Rows, in the order of the file, of the grains and clumps with their centre in the part of the box that this rank
+// knows; all rows of a population that moves as one body. Needs several ranks. Collective.
 std::vector<BedGrain> rows_known(const Population& population, const PackingDomain& ranks, const CentreOf& centre_of);
 
-// Its grains and members of clumps that this rank knows, numbered by row, as obstacles for others. Collective.
+// Grains and members of clumps that this rank knows, numbered by row, as obstacles for others. Collective.
 std::vector<Obstacle> spheres_of_file(const Population& population, const PackingDomain& ranks);
 
 }  // namespace thalweg::beds

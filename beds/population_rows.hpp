@@ -25,7 +25,7 @@ struct PopulationRow {
 // file, otherwise an even share.
 RowRange share_of_rows(const Population& population, const Ranks& ranks = {});
 
-// Those rows of one of the populations.
+// Rows of one population in such a share.
 std::vector<PopulationRow> rows_of(std::span<const Population> populations, std::size_t number, const RowRange& share);
 
 }  // namespace thalweg::beds

@@ -28,7 +28,7 @@ int assembly_of(std::span<const Population> populations, std::size_t population)
   return number;
 }
 
-// What all grains of a population have in common.
+// Seed with the properties that all grains of a population have in common.
 dem::GrainSeed common_seed(std::span<const Population> populations, std::size_t number) {
   const Population& population = populations[number];
   dem::GrainSeed seed;
@@ -67,7 +67,7 @@ dem::ClumpSeed clump_seed_of(const dem::GrainSeed& as_grain, dem::ClumpSeed clum
   return clump;
 }
 
-// Who is given a place first.
+// Order in which populations are placed.
 enum class PlacementOrder { given, uniform, dense, random };
 
 PlacementOrder order_of(const PlacementKeys& placement) {
@@ -239,7 +239,7 @@ private:
   GlobalId first_ = 0;  // id of the population's first grain
 };
 
-// Whether another population is to keep clear of those that are placed before it.
+// True if a later population must keep clear of those placed before it.
 bool anyone_keeps_clear(std::span<const Population> populations) {
   return std::any_of(populations.begin(), populations.end(), [](const Population& population) {
     return order_of(population.placement) >= PlacementOrder::dense;

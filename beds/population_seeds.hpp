@@ -1,4 +1,4 @@
-// From populations to single grains at the start, to rigid assemblies and to materials.
+// Seeds, rigid assemblies and materials that follow from populations.
 #pragma once
 
 #include "beds/packing/packing_domain.hpp"

@@ -1,4 +1,4 @@
-// The grain, or the pair of grains, with the largest value of something: looked for on every rank, agreed by all.
+// Grain, or pair of grains, with the largest value of a quantity over all ranks.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -10,16 +10,16 @@
 
 namespace thalweg::dem {
 
-// value: above 0 where there is anything. first, second: ids, second -1 where it is one grain. position: m.
+// value: above 0 if there is a candidate. first, second: ids; second is -1 for a single grain. position: m.
 struct DistributedArgmax {
   double value = 0.0;
   GlobalId first = -1, second = -1;
   Vec3 position = Vec3::Zero();
 
-  // Takes the candidate if it is larger; of equals the one with the lower ids.
+  // Takes the candidate if it is larger; among equals the one with the lower ids.
   void consider(const DistributedArgmax& candidate);
 
-  // That of all ranks, the same on each; empty where no rank has any. Collective.
+  // The largest of all ranks, the same on each; empty if no rank has a candidate. Collective.
   std::optional<Location> over_ranks(MPI_Comm communicator) const;
 };
 

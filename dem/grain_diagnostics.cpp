@@ -62,7 +62,7 @@ std::vector<Contact> GrainDynamics::contacts() const {
   return touching;
 }
 
-// From the centre of a member's clump to the member, of every owned grain; empty without clumps.
+// Vectors (m) from the centre of a member's clump to the member, for every owned grain; empty without clumps.
 std::vector<Vec3> GrainDynamics::places_in_clumps() const {
   std::vector<Vec3> from_centre(clumps_.empty() ? 0 : store_.owned, Vec3::Zero());
   for (std::size_t n = 0; n < clumps_.size(); ++n)
@@ -73,7 +73,7 @@ std::vector<Vec3> GrainDynamics::places_in_clumps() const {
   return from_centre;
 }
 
-// The forces with which the rough floor holds grains along it: what their contacts leave of contact_force.
+// Forces with which the rough floor holds grains along it: contact_force less the forces of the contacts.
 void GrainDynamics::for_each_hold(std::span<const char> chosen, const ContactSource::ContactEndVisitor& visit) const {
   if (!rough_floor_) return;
   std::vector<char> held(store_.owned, 0);  // members of a clump with all of it

@@ -78,7 +78,7 @@ void check_time_step(const GrainParameters& parameters, std::span<const Lightest
 void check_lubrication(const GrainParameters& parameters, std::span<const LightestGrain> lightest,
                        double largest_radius, const PeriodicBox& box);
 
-// Two grains in contact, or a grain and a wall or solid.
+// Contact of two grains, or of a grain with a wall or solid.
 struct Contact {
   GlobalId first, second;  // the lower id; the higher one, or -1 - w for wall w, -1 - (number of walls + s) for solid s
   double overlap;          // m
@@ -86,7 +86,7 @@ struct Contact {
   std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
 };
 
-// The name of the diagnostics of the force of all grains on a solid.
+// Name of the diagnostics of the force of all grains on a solid.
 std::string solid_force_diagnostic(std::size_t solid);
 
 class GrainDynamics {
@@ -97,22 +97,22 @@ public:
   // forces. No seeds: load() is to follow. Collective.
   GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
                 GrainSeeds seeds);
-  // The same with full lists.
+  // Constructor from full lists of seeds.
   GrainDynamics(const Decomposition& decomposition, MPI_Comm communicator, const GrainParameters& parameters,
                 const std::vector<GrainSeed>& grains, const std::vector<ClumpSeed>& clumps = {})
       : GrainDynamics(decomposition, communicator, parameters, GrainSeeds{grains, clumps}) {}
   GrainDynamics(const GrainDynamics&) = delete;
   GrainDynamics& operator=(const GrainDynamics&) = delete;
 
-  // Before the sub-steps of a fluid step: wraps positions and, where some grain may leave its half skin during the
-  // coming sub-steps, moves grains to the rank of their centre and rebuilds ghosts and contact list. True if slots
-  // changed. Throws RunError, on every rank, where a grain has outrun its half skin, moves more than its radius in one
-  // fluid step, is beyond a wall or a non-periodic face by more than its radius or half its radius deep in a plate or a
+  // Prepares the sub-steps of a fluid step: wraps positions and, if some grain may leave its half skin during them,
+  // moves grains to the rank of their centre and rebuilds ghosts and neighbour list. True if slots changed. Throws
+  // RunError, on every rank, if a grain has moved more than half the skin, moves more than its radius in one fluid
+  // step, is beyond a wall or a non-periodic face by more than its radius, is half its radius deep in a plate or a
   // solid, or is no longer a number. One reduction. Collective.
   bool prepare();
 
-  // The same before a part of the sub-steps, for grains too fast for one list per fluid step. Returns how many
-  // sub-steps may follow, at most GrainParameters::sub_steps: by the state alone, whatever the age of the list.
+  // Prepares a part of the sub-steps, for grains too fast for one list per fluid step. Returns the number of sub-steps
+  // that may follow, at most GrainParameters::sub_steps; it depends on the state alone, not on the age of the list.
   int prepare_part();
 
   // Moves the grains under the loads in store(). At most GrainParameters::sub_steps since prepare(), or as many as
@@ -166,13 +166,13 @@ public:
   // Every contact of every owned grain, as it feels it (contact_forces.hpp); of a clump's member, with the arm from the
   // clump's centre.
   void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
-  // The same of the lubrication forces (lubrication.hpp), of which there are none without them.
+  // Visits the lubrication forces (lubrication.hpp) likewise; there are none without lubrication.
   void for_each_lubrication(
       const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
   // Contacts of some owned grains (chosen[slot] != 0), of a clump's member with the arm from its own centre.
   void for_each_contact_of(std::span<const char> chosen,
                            const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
-  // Of walls on all owned grains: contacts, then lubrication.
+  // Visits the forces of walls on all owned grains: contacts, then lubrication.
   void for_each_wall_force(const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const;
 
   // Diagnostics over all ranks, the same bits in any layout; a clump is one grain, with the velocity of its centre, but
@@ -190,9 +190,8 @@ public:
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
   std::int64_t restless_count(double speed, double acceleration) const;
 
-  // Where these two diagnostics have their values: the pair that overlaps most, and the grain or clump (by its first
-  // member) that largest_speed() belongs to; of several, those with the lowest ids. Empty where there are none.
-  // Collective.
+  // Locations of these two diagnostics: the pair that overlaps most, and the grain or clump (by its first member) with
+  // the largest speed; among equals the lowest ids. Empty if there is none. Collective.
   std::optional<Location> place_of_deepest_overlap() const;
   std::optional<Location> place_of_fastest() const;
 
@@ -227,7 +226,8 @@ private:
   void check_integrator() const;
   double list_range() const;
   void wrap_positions();
-  // Over all ranks: how far grains and walls are from where the list was built, m, and how fast they may become, m/s.
+  // Distance (m) of grains and walls from where the list was built, and bound of their speed (m/s); both the largest
+  // over all ranks.
   struct Outlook {
     double farthest, fastest;
   };
@@ -247,7 +247,8 @@ private:
   std::vector<Vec3> places_in_clumps() const;
   void evaluate_forces(double time_step);
   bool touches_rough_floor(double z, double radius) const { return z - planes_[*rough_floor_].point.z() < radius; }
-  // Visits what the rough floor holds, of which touches(slot) says whether it touches it: on_grain(slot), on_clump(n).
+  // Visits the grains and clumps that the rough floor holds: on_grain(slot), on_clump(n). touches(slot): true if a
+  // grain touches the floor.
   template <typename Touches, typename OnGrain, typename OnClump>
   void for_each_held(Touches touches, OnGrain on_grain, OnClump on_clump) const {
     for (std::size_t s = 0; s < store_.owned; ++s)

@@ -147,8 +147,8 @@ int saved_width(const ArchiveReader& archive, const std::string& group) {
   return shape.size() < 2 ? 1 : static_cast<int>(shape[1]);
 }
 
-// Whether the saved columns are those of a run like this one: as many of the system, and with those of the integrator
-// as many in all. (States saved before the system's were counted have only the sum.)
+// True if the saved columns fit this run: as many of the system, and as many in all with those of the integrator.
+// (States saved before the system's columns were counted have only the total.)
 bool has_columns(const ArchiveReader& archive, const std::string& group, int of_system, int in_all) {
   const std::string name = group + "/system_columns";
   return saved_width(archive, group) == in_all && (!archive.has(name) || archive.integer_attribute(name) == of_system);
@@ -178,7 +178,7 @@ void check_loaded(const GrainBatch& batch, const GrainSpace& space, MPI_Comm com
                                space.upper()[static_cast<int>(outlier.axis)]));
 }
 
-// Of each material, over all ranks: grains, and clumps as their contacts feel them.
+// Lightest grain of each material over all ranks: grains, and clumps with the mass that their contacts feel.
 std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vector<Clump>& clumps, int materials,
                                        MPI_Comm communicator) {
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials));

@@ -14,8 +14,8 @@ bool GrainDynamics::prepare() {
 }
 
 int GrainDynamics::prepare_part() {
-  // Of the way that a fresh list allows, at twice the largest speed: since grains are slower, most parts need no new
-  // list.
+  // Part of the way that a fresh list allows at twice the largest speed. Since grains are slower, most parts need no
+  // new list.
   constexpr double part = 0.25;
   const auto scope = timer_.measure(lists_phase_);
   const Outlook outlook = look_ahead();
@@ -32,14 +32,14 @@ bool GrainDynamics::rebuild_for(const Outlook& outlook, int sub_steps) {
   return true;
 }
 
-// Wraps positions and looks for trouble.
+// Wraps positions and checks the validity of the grains.
 GrainDynamics::Outlook GrainDynamics::look_ahead() {
   wrap_positions();
-  // What may still happen before the next call: a grain at rest can be thrown at no more than about twice the largest
-  // speed, and the loads accelerate it.
+  // Bounds until the next call: a grain at rest can be thrown at no more than about twice the largest speed, and the
+  // loads accelerate it.
   double farthest = 0.0, fastest = largest_prescribed_speed();
-  bool trouble = false;
-  const GrainValidity watch{GrainSpace(box_, planes_), parameters_.skin, step_time(), deep_in_solids()};
+  bool faulty = false;
+  const GrainValidity validity{GrainSpace(box_, planes_), parameters_.skin, step_time(), deep_in_solids()};
   for (std::size_t w = 0; w < planes_.size(); ++w)
     farthest = std::max(farthest, planes_[w].moved_since(listed_planes_[w]));
   for (std::size_t n = 0; n < solids_.size(); ++n)
@@ -50,13 +50,13 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
     const double pull = (store_.load_force[s] + body_force_[s]).norm() * store_.inverse_mass[s];
     farthest = std::max(farthest, displacement);
     fastest = std::max(fastest, 2.0 * speed + pull * step_time());
-    trouble = trouble || watch.fault_of(store_, s, displacement) != GrainFault::none;
+    faulty = faulty || validity.fault_of(store_, s, displacement) != GrainFault::none;
   }
   fastest = std::max(fastest, fastest_member());
-  const double mine[3] = {farthest, fastest, trouble ? 1.0 : 0.0};
+  const double mine[3] = {farthest, fastest, faulty ? 1.0 : 0.0};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, communicator_);
-  if (all[2] != 0.0) watch.throw_first(store_, box_, listed_position_, communicator_);
+  if (all[2] != 0.0) validity.throw_first(store_, box_, listed_position_, communicator_);
   return {all[0], all[1]};
 }
 
@@ -130,7 +130,7 @@ void GrainDynamics::migrate(ContactHistories& histories) {
   if (clump_count_ > 0) clumps_.migrate(decomposition_, communicator_);
 }
 
-// Makes everything that follows from the owned grains: ghosts, contact list, body forces.
+// Makes everything that follows from the owned grains: ghosts, neighbour list, body forces.
 void GrainDynamics::build_dependents(const ContactHistories& histories) {
   clumps_.find_members(store_);
   if (parameters_.field) parameters_.field->fill_columns(store_, clumps_);

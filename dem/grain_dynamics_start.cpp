@@ -21,7 +21,7 @@ const GrainParameters& checked(const GrainParameters& p) {
   if (p.sub_steps < 1)
     throw InputError(fmt::format("The number of grain sub-steps is {}; it must be positive.", p.sub_steps));
   if (!(p.skin > 0.0))
-    throw InputError(fmt::format("The skin of the contact list is {:g} m; it must be positive.", p.skin));
+    throw InputError(fmt::format("The skin of the neighbour list is {:g} m; it must be positive.", p.skin));
   if (!(p.ghost_width >= 0.0))
     throw InputError(fmt::format("The ghost width of the grains is {:g} m; it must not be negative.", p.ghost_width));
   return p;
@@ -148,12 +148,12 @@ void GrainDynamics::check_integrator() const {
     throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
 }
 
-// The contact list must outlast a step.
+// The neighbour list must outlast a step.
 void GrainDynamics::check_prescribed_speed() const {
   const double speed = largest_prescribed_speed();
   if (speed * step_time() <= 0.5 * parameters_.skin) return;
   throw InputError(fmt::format(
-      "Walls or rigid assemblies of grains move at up to {:g} m/s, further than half the skin of the contact "
+      "Walls or rigid assemblies of grains move at up to {:g} m/s, further than half the skin of the neighbour "
       "list, {:g} m, in a step of {:g} s; give them a lower speed or the run a shorter step.",
       speed, parameters_.skin, step_time()));
 }

@@ -1,4 +1,4 @@
-// Where grains may be: the box, and what walls that have moved add to it or take from it.
+// Space in which grains may be: the box, extended or reduced by walls that have moved.
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
@@ -30,7 +30,7 @@ public:
   const Vec3& lower() const { return lower_; }  // m
   const Vec3& upper() const { return upper_; }
 
-  // Whether it is nowhere beyond an end of the space by more than its radius (m).
+  // True if the position is nowhere beyond an end of the space by more than the radius (m).
   bool holds(const Vec3& position, double radius) const {
     for (int axis = 0; axis < 3; ++axis)
       if (!box_.periodic[axis] && (position[axis] < lower_[axis] - radius || position[axis] > upper_[axis] + radius))
@@ -43,7 +43,7 @@ public:
                        [&](const Plane& wall) { return (position - wall.point).dot(wall.normal) < -radius; });
   }
 
-  // Its centre is nearer to a plate than half its radius: it might come out on the other side.
+  // True if the centre is nearer to a plate than half its radius, so that it might come out on the other side.
   bool deep_in_plate(const Vec3& position, double radius) const {
     return std::any_of(plates_.begin(), plates_.end(),
                        [&](const Plane& plate) { return plate.seen_from(position, box_).distance < 0.5 * radius; });

@@ -16,7 +16,7 @@ namespace {
 
 struct Report {
   std::int64_t id = std::numeric_limits<std::int64_t>::max();
-  GrainFault trouble = GrainFault::none;
+  GrainFault fault = GrainFault::none;
   double x[3] = {}, speed = 0.0;
 };
 
@@ -24,8 +24,8 @@ struct Report {
 Report lowest_of(Report report, MPI_Comm communicator) {
   std::int64_t lowest = 0;
   MPI_Allreduce(&report.id, &lowest, 1, MPI_INT64_T, MPI_MIN, communicator);
-  int teller = report.id == lowest ? rank_of(communicator) : 0, root = 0;
-  MPI_Allreduce(&teller, &root, 1, MPI_INT, MPI_MAX, communicator);
+  int reporter = report.id == lowest ? rank_of(communicator) : 0, root = 0;
+  MPI_Allreduce(&reporter, &root, 1, MPI_INT, MPI_MAX, communicator);
   MPI_Bcast(&report, sizeof(Report), MPI_BYTE, root, communicator);
   return report;
 }
@@ -49,18 +49,17 @@ GrainFault GrainValidity::fault_of(const GrainStore& store, std::size_t s, doubl
 void GrainValidity::throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
                                 MPI_Comm communicator) const {
   Report mine;
-  for (std::size_t s = 0; s < store.owned && mine.trouble == GrainFault::none; ++s) {
+  for (std::size_t s = 0; s < store.owned && mine.fault == GrainFault::none; ++s) {
     const Vec3& x = store.position[s];
-    const GrainFault trouble = fault_of(store, s, box.difference(x, listed[s]).norm());
-    if (trouble != GrainFault::none) mine = {store.id[s], trouble, {x[0], x[1], x[2]}, store.velocity[s].norm()};
+    const GrainFault fault = fault_of(store, s, box.difference(x, listed[s]).norm());
+    if (fault != GrainFault::none) mine = {store.id[s], fault, {x[0], x[1], x[2]}, store.velocity[s].norm()};
   }
   const Report report = lowest_of(mine, communicator);
   const std::string grain = fmt::format("Grain {} at ({:g}, {:g}, {:g}) m, moving at {:g} m/s,", report.id, report.x[0],
                                         report.x[1], report.x[2], report.speed);
-  switch (report.trouble) {
+  switch (report.fault) {
     case GrainFault::not_finite:
-      throw RunError(grain +
-                     " has a position or velocity that is not a number; its load or its contacts have blown up.");
+      throw RunError(grain + " has a position or velocity that is not a number; its load or its contacts diverged.");
     case GrainFault::outside:
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
     case GrainFault::beyond_wall:
@@ -76,7 +75,7 @@ void GrainValidity::throw_first(const GrainStore& store, const PeriodicBox& box,
                                  step_time));
     default:
       throw RunError(
-          fmt::format("{} has gone more than half the skin of {:g} m since the contact list was built; use a "
+          fmt::format("{} has moved more than half the skin of {:g} m since the neighbour list was built; use a "
                       "shorter time step or a wider skin.",
                       grain, skin));
   }

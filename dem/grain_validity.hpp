@@ -1,5 +1,5 @@
-// What must not happen to a grain in a run, looked for at every prepare() of the grains: better a run that stops with
-// the grain's id, place and speed than a wrong number.
+// Validity of the grains, checked at every prepare(): a fault stops the run and reports the grain's id, position and
+// speed.
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
@@ -17,15 +17,15 @@ enum class GrainFault { none, not_finite, outside, beyond_wall, in_plate, in_sol
 
 struct GrainValidity {
   GrainSpace space;
-  double skin;                         // m, of the contact list: a grain may go half of it
+  double skin;                         // m, of the neighbour list: a grain may move half of it
   double step_time;                    // s, of the caller's step, in which a grain may move its radius
   std::vector<std::size_t> in_solids;  // slots of grains that are half their radius deep in a solid, rising
 
-  // displacement: m, since the contact list was built.
+  // displacement: m, since the neighbour list was built.
   GrainFault fault_of(const GrainStore& store, std::size_t owned_slot, double displacement) const;
 
-  // Throws RunError, the same on every rank: of all grains in trouble, about the one with the lowest id. There must be
-  // one on some rank. listed: places of owned grains when the list was built. Collective.
+  // Throws RunError, the same on every rank, about the faulty grain with the lowest id; some rank must have one.
+  // listed: positions of owned grains when the list was built. Collective.
   [[noreturn]] void throw_first(const GrainStore& store, const PeriodicBox& box, const std::vector<Vec3>& listed,
                                 MPI_Comm communicator) const;
 };

@@ -25,14 +25,14 @@ struct LightestGrain {
     radius_per_mass = std::max(radius_per_mass, other_radius / other_mass);
   }
 
-  // Of a grain of the least mass whose Hertzian contacts are as short as the shortest: their time goes with the fifth
-  // root of m^2/R, which a heavier but larger grain may have the least of. m
+  // Radius (m) of a grain of the least mass whose Hertzian contacts are as short as the shortest: their time goes with
+  // the fifth root of m^2/R, which may be least for a heavier but larger grain.
   double hertzian_radius() const {
     return mass * mass / radius > squared_mass_per_radius ? mass * mass / squared_mass_per_radius : radius;
   }
 };
 
-// Of all ranks, by material. Collective.
+// Combines the lightest grains of all ranks, by material. Collective.
 inline void share_over_ranks(MPI_Comm communicator, std::vector<LightestGrain>& lightest) {
   for (LightestGrain& grain : lightest)
     grain = {-max_over_ranks(communicator, -grain.mass), -max_over_ranks(communicator, -grain.radius),

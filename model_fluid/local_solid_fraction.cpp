@@ -218,7 +218,7 @@ void LocalSolidFraction::copy_neighbours(std::size_t slot, const std::vector<dem
   near_.size = n + 1;
 }
 
-// What all solids near it have in common with a grain's own spheres. They have been copied.
+// Sums the volume that all solids near a grain, which have been copied, have in common with its own spheres.
 void LocalSolidFraction::sum_own(std::size_t slot) {
   const std::size_t itself = near_.size - 1;
   near_.x[itself] = solids_[slot][0];

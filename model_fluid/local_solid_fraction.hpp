@@ -55,7 +55,7 @@ public:
   std::span<const std::uint32_t> update(const dem::PackedGrainState& grains, const dem::Clumps& clumps,
                                         dem::GrainStore& store);
 
-  // Of a grain, or of the clump whose first member this is.
+  // Solid fraction around a grain, or around the clump whose first member this is.
   double around(std::size_t slot) const { return fraction(slot, 0); }
   // phi_below - phi_above; only with SolidFractionParameters::lift.
   double below_less_above(std::size_t slot) const { return fraction(slot, 1) - fraction(slot, 2); }

@@ -8,7 +8,7 @@
 //
 // phi is the solid fraction, the grain's own included, in a sphere (disk) of diameter D_i + 2 D_l about its centre, D_l
 // being the largest diameter; phi_below and phi_above are those about the lowest and the highest point of the grain.
-// What of the sphere lies below the floor does not count. B_1 grows with the diameter of a grain, B_2 and B_l with its
+// The part of the sphere below the floor does not count. B_1 grows with the diameter of a grain, B_2 and B_l with its
 // square.
 //
 // The misprints of the paper are settled as follows: |w| is missing in its equation 7, the denominator of f has phi_t
@@ -28,7 +28,7 @@ namespace thalweg::model_fluid {
 
 enum class ModelDrag { linear, quadratic };
 
-// Of the mean grain.
+// Scales of the mean grain.
 struct GrainScales {
   double diameter;  // m, D
   double mass;      // kg, m
@@ -52,7 +52,7 @@ struct ModelFluidCoefficients {
 
 inline constexpr double printed_to_physical_reynolds = 6.0;
 
-// The same fluid, B_1 and B_2, at another v_0, so that it has this Shields number; lift goes with drag.
+// The same fluid (B_1 and B_2) with the v_0 that gives this Shields number; lift goes with drag.
 inline ModelFluidCoefficients at_shields_number(double shields, double lift_ratio, const ModelFluidCoefficients& fluid,
                                                 const GrainScales& s) {
   const double weight = shields * s.mass * s.gravity;  // Theta m g' = 2/3 (B_1 v_0 + B_2 v_0^2)
@@ -71,7 +71,7 @@ inline ModelFluidCoefficients coefficients_of(const ModelFluidNumbers& n, const 
 
 inline double particle_reynolds(const ModelFluidCoefficients& c) { return 60.0 * c.inertial * c.velocity / c.viscous; }
 
-// How the velocity of the fluid falls off with the solid fraction.
+// Decrease of the velocity of the fluid with the solid fraction.
 struct VelocityProfile {
   double decay;    // b
   double top;      // phi_t, where f = 1

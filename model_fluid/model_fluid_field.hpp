@@ -31,8 +31,8 @@ public:
   void act(dem::PackedGrainState& grains, dem::GrainStore& store, dem::Clumps& clumps,
            std::span<const Vec3> body_force) override;
   void step_ended(const dem::GrainDynamics& grains, double time) override;
-  // With a ramp: shields_number; reynolds_number, Re_* as printed, which grows with its root; and hold_left (s): the
-  // motion since the last step up counts as one without end when none is left.
+  // Diagnostics of a ramp: shields_number; reynolds_number, Re_* as printed, which grows with its root; and hold_left
+  // (s), the time left until motion since the last step up counts as permanent.
   std::vector<Diagnostic> diagnostics(double time) const override;
   static constexpr const char* hold_left_diagnostic = "hold_left";
   void save(ArchiveWriter& archive) const override;

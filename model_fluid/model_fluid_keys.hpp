@@ -1,4 +1,4 @@
-// How a case describes the model fluid (model_fluid.hpp): the section `model_fluid`.
+// Keys of the model fluid (model_fluid.hpp): the section `model_fluid`.
 #pragma once
 
 #include "core/keys/section_visitor.hpp"

@@ -1,5 +1,5 @@
-// What measures a run. An observer looks at snapshots and turns them into numbers; it never changes the state, so that
-// switching it off does not change one bit of the run.
+// Observer: turns snapshots of a run into numbers. It never changes the state, so that switching it off does not
+// change one bit of the run.
 #pragma once
 
 #include "core/base/archive.hpp"
@@ -23,30 +23,31 @@ public:
   // Seconds of simulated time between its measurements; 0: with the rows of the series.
   virtual double every() const { return 0.0; }
 
-  // True for one that may measure in every step: its measurements alone do not trigger a check of the system's health.
+  // True if it may measure in every step: its measurements alone do not trigger a check of the system's health.
   virtual bool is_lightweight() const { return false; }
 
-  // Whether it looks at Snapshot::momentum, which a system records when asked before the step.
+  // True if it needs Snapshot::momentum, which a system records when asked before the step.
   virtual bool needs_momentum() const { return false; }
 
   // Takes one measurement. Collective: every rank calls it at the same steps.
   virtual void observe(const Snapshot& snapshot) = 0;
 
-  // The latest measurement, the same on every rank: columns of the series. Their names and order never change.
+  // Latest measurement, the same on every rank: columns of the series. Names and order must not change; SeriesTable
+  // refuses a row that differs.
   virtual std::vector<Diagnostic> diagnostics() const = 0;
 
-  // What the run has come to so far, the same on every rank: means for the summary.
+  // Results so far, the same on every rank: means for the summary.
   virtual std::vector<Diagnostic> results() const { return diagnostics(); }
 
-  // The same as arrays, for profiles.h5.
+  // Results as arrays, for profiles.h5.
   virtual std::vector<Profile> profiles() const { return {}; }
 
-  // The same in words, for the log at the end of the run: one sentence each.
+  // Results in words for the log at the end of the run, one sentence each.
   virtual std::vector<std::string> remarks() const { return {}; }
 
   // True if it has a folder of its own in the run folder, NAME, to which take_records() is added.
   virtual bool has_records() const { return false; }
-  // What it has recorded since the last call: on rank 0, empty elsewhere. Called before every save().
+  // Records since the last call, on rank 0; empty elsewhere. Called before every save().
   virtual Records take_records() { return {}; }
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.

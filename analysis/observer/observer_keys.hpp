@@ -1,4 +1,4 @@
-// What a case says about an observer: a section of `analysis`, as a struct of plain values with their defaults and
+// Keys of an observer: a section of `analysis`, as a struct of plain values with their defaults and
 //
 //   static constexpr const char* section;   its key in the case file, and the observer's name
 //   static constexpr const char* meaning;   for the documentation
@@ -9,7 +9,7 @@
 //   void describe(SectionVisitor& visit, Keys& keys);                             (core/keys/section_visitor.hpp)
 //   std::unique_ptr<Observer> make_observer(const Keys& keys, const RunContext& run, const RunningSystem& system);
 //
-// and, where there is something to refuse or to warn of,
+// and, if some values are refused or questionable,
 //
 //   void check(const Keys& keys, const RunContext& run);                            throws KeyError
 //   std::optional<std::string> warning(const Keys& keys, const RunContext& run);    a sentence
@@ -22,6 +22,7 @@
 #include "core/keys/key_error.hpp"
 #include "core/keys/section_visitor.hpp"
 
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,17 @@
 namespace thalweg::analysis {
 
 enum class Needs { grains, fluid, both };
+
+// The form of the keys of an observer.
+template <typename Keys>
+concept IsObserverKeys = std::default_initializable<Keys> && std::equality_comparable<Keys> &&
+    requires(Keys& keys, SectionVisitor& visit, const RunContext& run, const RunningSystem& system) {
+  { Keys::section } -> std::convertible_to<std::string>;
+  { Keys::meaning } -> std::convertible_to<std::string>;
+  requires std::same_as<decltype(Keys::needs), const Needs>;
+  describe(visit, keys);
+  { make_observer(keys, run, system) } -> std::same_as<std::unique_ptr<Observer>>;
+};
 
 // The keys of means.
 void describe_from(SectionVisitor& visit, double& from);

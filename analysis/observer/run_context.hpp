@@ -1,4 +1,4 @@
-// What an observer may know of the run it measures, besides the snapshots: facts of the case, in SI units.
+// Context of an observer: properties of the case that it may use besides the snapshots, in SI units.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -24,7 +24,7 @@ struct FluidContext {
   bool top_moves = false;            // and moves along x
 };
 
-// Of a model fluid (model_fluid/model_fluid.hpp).
+// Context of a run with a model fluid (model_fluid/model_fluid.hpp).
 struct ModelFluidContext {
   double speed = 0.0;    // m/s, v_0, of the first Shields number
   double gravity = 0.0;  // m/s^2, reduced

@@ -16,7 +16,7 @@ namespace {
 
 const std::string static_height = "static_bed_height";
 
-// Of the columns that have a static pixel; not a number where none has.
+// Mean height of the columns that have a static pixel; not a number if none has.
 double mean_height(const std::vector<double>& surface) {
   const auto columns = static_cast<double>(std::count_if(surface.begin(), surface.end(), StaticPixels::is_static));
   return std::accumulate(surface.begin(), surface.end(), 0.0) / columns;

@@ -1,4 +1,4 @@
-// Where the bed ends and the flow begins, and the stress that follows from it.
+// Surface of the bed, and the stress that follows from it.
 //
 //   bed height        half of the bulk solid fraction (bed_height.hpp), and the mean of the surface of static pixels
 //                     (static_pixels.hpp)
@@ -8,9 +8,8 @@
 //                     f     = rho_f g_x                    N/m^3, g_x: g times the sine of the slope
 //   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
 //
-// Where the mean velocity is controlled, f is the body force that does so, as it is then; where the top of the box
-// drives the flow, or holds it back, its measured stress tau_top (Pa, on the fluid, along x) is included:
-//   tau_b = (f H + tau_top) W / (W + n H)
+// With a controlled mean velocity, f is the body force of the moment; a top of the box that drives or drags the flow
+// adds its measured stress tau_top (Pa, on the fluid, along x):
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"

@@ -63,7 +63,7 @@ void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen)
   }
 }
 
-// What the watched grains are and feel comes to their homes. Returns the ids of those here that have started,
+// Brings states and contacts of the watched grains to their homes. Returns the ids of those here that have started,
 // ascending.
 std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
@@ -106,7 +106,7 @@ void Entrainment::remember(Memory& memory, const Seen& seen, double time) const 
   while (memory.ring.front().time < oldest) memory.ring.pop_front();
 }
 
-// Whether the grain has just left its rest place.
+// True if the grain has just left its rest place.
 bool Entrainment::starts(Memory& memory) const {
   const GrainSample& now = memory.ring.back();
   const Vec3 position = now[GrainRecord::position];

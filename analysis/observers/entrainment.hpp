@@ -1,4 +1,5 @@
-// How grains of the bed start to move: what acted on them before, and about which hinge they rolled out (hinge.hpp).
+// Entrainment of grains from the bed: what acted on them before, and the hinge about which they rolled out
+// (hinge.hpp).
 //
 // A watched grain rests once it has been slower than the moving speed for a while; where it is then is its rest place.
 // It is entrained when its centre has left that place by a share of its diameter. What is remembered of it, its states
@@ -46,7 +47,7 @@ void check(const EntrainmentKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 
-// The same for a run: the ids ascending, and what follows from its step and its grains.
+// Settings of a run: the ids ascending, and values that follow from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
   double interval = 0.0;            // s, between samples
   std::int64_t refresh_steps = 0;   // between two selections of the surface grains
@@ -87,11 +88,11 @@ public:
   bool load(ArchiveReader& archive) override;  // begins anew where other grains were chosen, or with other definitions
 
 private:
-  // Of a start, by name: what is counted under one is not added to under another.
+  // Settings that define an event, by name; counts made with other settings are not continued.
   SavedSettings definitions() const;
 
   enum Phase { unsettled, at_rest, moving };
-  // Of a grain, at its home.
+  // Memory of a grain, at its home.
   struct Memory {
     bool watched = false;
     Phase phase = unsettled;

@@ -22,8 +22,8 @@ struct Entraining {
   std::optional<Hinge> hinge;         // none: it had too few contacts
   std::vector<HingeTorques> torques;  // of each sample; empty without a hinge
 
-  // Of the couple in the fluid's torque: sum T_C / sum T_F until the onset. Not a number without a hinge, or where the
-  // fluid did not push the way the grain went.
+  // Share of the couple in the fluid's torque, sum T_C / sum T_F until the onset. Not a number without a hinge, or if
+  // the fluid did not push the way the grain went.
   double couple_share() const;
   double largest_torque_ratio() const;  // of T_F to T_c until the onset; not a number without a hinge or a T_c above 0
 };

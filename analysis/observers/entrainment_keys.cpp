@@ -1,4 +1,4 @@
-// What a case says about Entrainment, and the settings that follow from it.
+// Keys of Entrainment, and the settings that follow from them.
 #include "analysis/observers/entrainment.hpp"
 #include "analysis/observers/transport_rate.hpp"
 #include "core/base/schedule.hpp"

@@ -1,5 +1,5 @@
-// What Entrainment remembers, in a checkpoint: one row for every id, and the samples and touches of all rings, one
-// after the other in the order of ids.
+// State of Entrainment in a checkpoint: one row for every id, and the samples and touches of all rings, one after the
+// other in the order of ids.
 #include "analysis/observers/entrainment.hpp"
 #include "core/parallel/mpi_session.hpp"
 

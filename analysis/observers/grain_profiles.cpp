@@ -108,7 +108,7 @@ std::vector<Profile> GrainProfiles::profiles() const {
   Profile temperature{"granular_temperature", "m^2/s^2", {}, {n}, {}};
   Profile contact_stress{"contact_stress", "Pa", tensor_names, {n, 9}, {}};
   Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
-  // Of all measurements together.
+  // Volume of a layer times the number of measurements.
   const double room =
       box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements()));
   for (int layer = 0; layer < layers_; ++layer) {

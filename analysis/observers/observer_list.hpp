@@ -42,9 +42,10 @@ public:
   bool operator==(const RequestedObservers&) const = default;
 
 private:
-  std::tuple<std::optional<FluidStatisticsKeys>, std::optional<ProbesKeys>, std::optional<TransportRateKeys>,
-             std::optional<BedSurfaceKeys>, std::optional<GrainProfilesKeys>, std::optional<StressBalanceKeys>,
-             std::optional<PopulationLoadsKeys>, std::optional<TracksKeys>, std::optional<EntrainmentKeys>>
+  template <IsObserverKeys... Keys>
+  using OptionalKeys = std::tuple<std::optional<Keys>...>;
+  OptionalKeys<FluidStatisticsKeys, ProbesKeys, TransportRateKeys, BedSurfaceKeys, GrainProfilesKeys, StressBalanceKeys,
+               PopulationLoadsKeys, TracksKeys, EntrainmentKeys>
       all_;
 };
 

@@ -36,8 +36,8 @@ public:
   std::string name() const override { return "population_loads"; }
   void observe(const Snapshot& snapshot) override;
 
-  // For each population NAME_contact_force_x, _y, _z (N), NAME_contact_torque_x, ... (N m), and NAME_fluid_force_x,
-  // NAME_fluid_torque_x, ...
+  // Columns of each population: NAME_contact_force_x, _y, _z (N), NAME_contact_torque_x, ... (N m), and
+  // NAME_fluid_force_x, NAME_fluid_torque_x, ...
   std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
   void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements

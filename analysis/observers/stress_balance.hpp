@@ -158,7 +158,7 @@ private:
                                  // which they act over the layer's bottom; last the same of the top
   std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
 
-  // What a checkpoint holds, in its order.
+  // Sums in the order of a checkpoint.
   static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,
                                      &StressBalance::sides_, &StressBalance::held_up_, &StressBalance::driving_};
 };

@@ -1,4 +1,4 @@
-// What the sums of a stress balance come to: means by layers, totals, and how far they are from the driving stress.
+// Results of a stress balance: means by layers, totals, and their differences from the driving stress.
 #include "analysis/observers/stress_balance.hpp"
 #include "analysis/tools/tensor_names.hpp"
 #include "core/geometry/symmetric_pairs.hpp"
@@ -107,7 +107,7 @@ double StressBalance::above(int layer, GrainColumn force, GrainColumn lever) con
   return above(layer, grains_, grain_columns, force, lever);
 }
 
-// The same of what is recorded where it acts.
+// Sum above a layer of forces recorded at the height at which they act.
 double StressBalance::by_height_above(const std::vector<double>& half_planes, int layer) const {
   const double from = layers_.first_plane(layer), planes = layers_.first_plane(layer + 1) - from;
   double sum = 0.0;
@@ -116,7 +116,7 @@ double StressBalance::by_height_above(const std::vector<double>& half_planes, in
   return sum;
 }
 
-// The same of the force that drives the fluid.
+// Sum above a layer of the force that drives the fluid.
 double StressBalance::driven_above(int layer) const {
   const int from = layers_.first_plane(layer), planes = layers_.first_plane(layer + 1) - from;
   double sum = 0.0;

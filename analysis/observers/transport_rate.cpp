@@ -15,7 +15,7 @@ namespace {
 
 constexpr double share_that_counts_as_moving = 0.01;
 
-// Of velocities, in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
+// Range of velocities in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
 constexpr double slowest = -5.0, fastest = 15.0;
 constexpr int velocity_bins = 200;
 

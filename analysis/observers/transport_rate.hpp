@@ -1,4 +1,4 @@
-// How much sediment moves.
+// Sediment transport rate.
 //
 //   q_s = sum over grains of V v_x / (L W)              volume flux per unit width, m^2/s
 //   q*  = q_s / sqrt((s - 1) g d^3),  s = rho_s/rho_f   the same without dimension

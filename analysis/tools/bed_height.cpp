@@ -7,7 +7,7 @@ namespace thalweg::analysis {
 
 namespace {
 
-// Below which this share of all volume lies; spacings.
+// Height, in spacings, below which this share of all volume lies.
 double height_of_share(const VolumeBelow& below, double share) {
   const double wanted = share * below.volume.back();
   std::size_t k = 1;

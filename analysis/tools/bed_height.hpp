@@ -25,7 +25,7 @@ struct VolumeBelow {
 
 // A window is ten of these layers high.
 inline constexpr int thin_layers_a_window = 10;
-// How many of them a box of this height (m) has; at least one.
+// Number of thin layers in a box of this height (m), at least one.
 int thin_layers(double box_height, double window);
 
 // phi_bulk; 0 without grains.

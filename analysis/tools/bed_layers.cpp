@@ -12,7 +12,7 @@ namespace thalweg::analysis {
 
 namespace {
 
-// For each clump, its volume over that of its members together, which may overlap.
+// Volume of each clump over that of its members together, which may overlap.
 std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
   std::map<GlobalId, double> shares;
   for (std::size_t i = 0; i < grains.id.size(); ++i)
@@ -76,7 +76,7 @@ void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, d
     const int first = static_cast<int>(std::floor(foot / thickness_));
     const int last = static_cast<int>(std::floor((foot + 2.0 * radius) / thickness_));
     for (int layer = std::max(0, first); layer <= std::min(layers_ - 1, last); ++layer) {
-      // What a wall overlaps belongs to the layer at the wall, so that no volume is lost.
+      // The part of a grain beyond a wall belongs to the layer at the wall, so that no volume is lost.
       const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
       const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
       const double volume = share * volume_between(radius, grains.disk_thickness, lower, upper);

@@ -1,4 +1,4 @@
-// The mean of a series whose values depend on those before, and how far it may be off.
+// Mean of a correlated series, and its error.
 //
 // The series is kept as 512 to 1023 means of batches of 1, 2, 4, ... values, which grow as it goes on, so that what
 // goes into a checkpoint does not. The standard error of the mean of n values is sqrt(sigma^2 L/n), with L the values
@@ -14,8 +14,8 @@
 
 namespace thalweg::analysis {
 
-// Below this an error is too small more often than by chance, and nothing is said of drifts: of series worth five
-// values one in fifty seems to be worth twenty.
+// Number of independent values below which an error is too small more often than by chance and drift is not judged:
+// one in fifty series worth five values seems to be worth twenty.
 constexpr double fewest_independent_values = 20.0;
 
 class CorrelatedMean {
@@ -36,7 +36,7 @@ public:
   std::span<const double> batches() const { return batches_; }  // means of the complete ones
   double round_off() const;  // by which batches that should be alike may differ, in their unit
 
-  // For a checkpoint.
+  // State for a checkpoint.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 

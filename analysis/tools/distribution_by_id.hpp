@@ -1,7 +1,7 @@
-// Where an observer keeps what it remembers of a grain from one measurement to the next: on a rank that follows from
-// the grain's id and not from where the grain is. Every rank is home to one range of ids; each measurement sends a few
-// numbers of every grain from its owner to its home. Owners may then change as they like, a checkpoint is written in
-// the order of ids whatever the number of ranks, and no rank remembers more than its share of all grains.
+// Distribution of data of an observer over the ranks by the grain's id: every rank is home to one range of ids, and
+// stores what the observer remembers of these grains from one measurement to the next. Each measurement sends a few
+// numbers of every grain from its owner to its home. Owners may then change freely, a checkpoint is written in the
+// order of ids on any number of ranks, and no rank stores more than its share of all grains.
 #pragma once
 
 #include "core/base/archive.hpp"
@@ -39,8 +39,8 @@ public:
     return exchange_rows(communicator_, rows, home);
   }
 
-  // What homes answer to questions about these ids, in their order: answer(id) is called at the home of the id. Answers
-  // are trivially copyable. Collective.
+  // Answers of the homes to questions about these ids, in their order: answer(id) is called at the home of the id.
+  // Answers are trivially copyable. Collective.
   template <typename Answer>
   auto ask(std::span<const GlobalId> ids, const Answer& answer) const {
     using Value = decltype(answer(GlobalId{}));

@@ -34,8 +34,8 @@ inline const std::array<std::pair<std::string, std::string>, GrainRecord::quanti
      {"fluid_couple", "N m"},
      {"contact_force", "N"}}};
 
-// Of grain n of the view. The load of the fluid is the one applied during the step, zero without a fluid; contact
-// forces are those at its end.
+// Record of grain n of the view. The load of the fluid is the one applied during the step, zero without a fluid;
+// contact forces are those at its end.
 inline GrainRecord record_of(const GrainView& grains, std::size_t n) {
   GrainRecord record;
   record.id = grains.id[n];

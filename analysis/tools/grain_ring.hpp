@@ -1,4 +1,4 @@
-// What is remembered of a watched grain: its latest states, each with its contacts.
+// Latest states of a watched grain, each with its contacts.
 #pragma once
 
 #include "analysis/tools/grain_record.hpp"
@@ -29,7 +29,7 @@ struct GrainSample {
 
 using GrainRing = std::deque<GrainSample>;  // oldest first
 
-// The same as rows that can be sent from rank to rank: touches lie one after the other, as many as their samples say.
+// States as rows for messages: touches lie one after the other, as many as their samples say.
 struct TouchRow {
   GlobalId id, partner;          // of the grain, of what it touches
   std::array<double, 7> values;  // arm, force, distance

@@ -18,7 +18,7 @@ const Touch* touch_of(const std::vector<Touch>& touches, GlobalId partner) {
   return found == touches.end() ? nullptr : &*found;
 }
 
-// Those of the contacts at the start that are still loaded in the latest sample in which two of them are.
+// Contacts at the start that are still loaded in the latest sample in which two of them are.
 std::vector<Touch> still_loaded(const GrainRing& ring, std::size_t start, const std::vector<Touch>& at_start) {
   for (std::size_t n = ring.size(); n-- > start;) {
     const std::vector<Touch> now = loaded_touches(ring[n]);

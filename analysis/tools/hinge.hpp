@@ -28,9 +28,9 @@ struct Hinge {
   Vec3 axis;                         // unit vector, e
 };
 
-// Of the contacts loaded at the onset (or at the latest sample before with two of them), those still loaded in the
-// latest sample in which two are; of more than two the ones furthest downstream, along x. way: m, from the rest place
-// to the latest position. None where the grain never had two loaded contacts.
+// Hinge of the contacts loaded at the onset (or at the latest sample before with two of them) that are still loaded in
+// the latest sample in which two are; of more than two the ones furthest downstream, along x. way: m, from the rest
+// place to the latest position. None if the grain never had two loaded contacts.
 std::optional<Hinge> hinge_of(const GrainRing& ring, std::size_t onset, const Vec3& way);
 
 struct HingeTorques {

@@ -1,5 +1,5 @@
-// How often values fell between fixed edges. Counts are integers, so that they do not depend on the order of the values
-// nor on who counted which.
+// Histogram: counts of values between fixed edges. Counts are integers, so they do not depend on the order of the
+// values nor on the rank that counted them.
 #pragma once
 
 #include <cstdint>

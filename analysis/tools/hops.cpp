@@ -11,7 +11,7 @@ namespace thalweg::analysis {
 
 namespace {
 
-// In units of length and time. Grains that only jiggle in their places make hops of a thousandth of a diameter.
+// Range in units of length and time. Grains that only jiggle in their places make hops of a thousandth of a diameter.
 constexpr double shortest = 1e-4, longest = 1e3;
 constexpr int bins = 140;  // 20 a decade
 

@@ -55,7 +55,7 @@ public:
 
 private:
   enum Phase { unseen, at_rest, hopping, hopping_uncounted };
-  // What is remembered of a body, at its home.
+  // Memory of a body, at its home.
   struct Memory {
     Phase phase = unseen;
     double x = 0.0, v_x = 0.0;  // m, m/s: at the latest measurement

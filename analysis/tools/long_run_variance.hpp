@@ -1,4 +1,4 @@
-// The variance of a mean of values that depend on those before.
+// Variance of the mean of correlated values.
 //
 // Of n values with the autocovariances gamma_k a mean has the variance sigma^2/n, and the slope of a straight line by
 // least squares sigma^2/S_tt (S_tt the sum of squared distances from the middle), with
@@ -30,8 +30,8 @@ struct LongRunVariance {
   double independent;  // how many independent values have the same variance of the mean, 1; at most n
 };
 
-// Of the distances of n >= 2 (line: n >= 3) values at equal intervals from their mean or their line. Where these do not
-// exceed `round_off` (unit of the values), that is sigma, and all values are independent.
+// Long-run variance of the distances of n >= 2 (line: n >= 3) values at equal intervals from their mean or their line.
+// If these do not exceed `round_off` (unit of the values), that is sigma, and all values are independent.
 LongRunVariance long_run_variance(std::span<const double> distances, About about, double round_off);
 
 }  // namespace thalweg::analysis

@@ -18,8 +18,8 @@ inline void save_settings(ArchiveWriter& archive, const std::string& group, cons
   for (const auto& [name, value] : settings) archive.attribute(in_group + name, value);
 }
 
-// Whether the sums of that group were made with these settings. An archive that lacks one is older than it, and is
-// accepted.
+// True if the sums of that group were made with these settings. An archive that lacks a setting is older than it, and
+// is accepted.
 inline bool were_saved_with(const ArchiveReader& archive, const std::string& group, const SavedSettings& settings) {
   const std::string in_group = group + "/";
   return std::all_of(settings.begin(), settings.end(), [&](const auto& setting) {

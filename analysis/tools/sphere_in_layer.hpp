@@ -1,4 +1,4 @@
-// How much of a sphere or disk lies between two heights, and where: exact.
+// Volume of a sphere or disk between two heights, and its first moment: exact.
 #pragma once
 
 #include <algorithm>

@@ -33,7 +33,8 @@ public:
   std::int64_t columns() const { return columns_; }
   double column_width() const { return width_; }   // m
   double begun() const { return picture_begun_; }  // s, of the latest picture
-  // Of the latest picture, m above the floor, one a column; 0 where no pixel is static. Empty before the first picture.
+  // Surface of the latest picture, m above the floor, one per column; 0 where no pixel is static. Empty before the
+  // first picture.
   const std::vector<double>& surface() const { return surface_; }
   static bool is_static(double height) { return height > 0.0; }  // one of surface()
 

@@ -1,4 +1,4 @@
-// Whether a series has settled: how much a straight line through it rises or falls.
+// Test of whether a series is stationary, by the drift of a straight line through it.
 //
 // A line is fitted by least squares to the batches of the series (correlated_mean.hpp). Its slope has the variance
 // sigma^2/S_tt, with sigma^2 the long-run variance of the batches about the line (long_run_variance.hpp), which are

@@ -1,4 +1,4 @@
-// Takes the rows of a bed file into a population, and computes the figures of all that it takes.
+// Import of the rows of a bed file into a population, with their figures.
 #pragma once
 
 #include "beds/population/population.hpp"

@@ -76,7 +76,7 @@ dem::GrainSeed seed_of(const PlacedRow& row) {
   return seed;
 }
 
-// Those that may overlap a row in the slab of this rank, and these.
+// Rows in the slab of this rank, and those that may overlap them.
 std::vector<dem::GrainSeed> rows_by_place(std::span<const BedGrain> rows, const PeriodicBox& box, double reach,
                                           const Ranks& ranks) {
   const Slabs slabs(rows, box, reach, ranks);

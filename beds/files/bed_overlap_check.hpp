@@ -1,4 +1,4 @@
-// Overlaps between the rows of a bed file, which are spread over several ranks.
+// Check of overlaps between the rows of a bed file, which are spread over several ranks.
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"

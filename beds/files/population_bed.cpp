@@ -158,7 +158,7 @@ void take_sizes(Population& population) {
   population.diameter = median_by_mass(counted(population.diameters), disks);
 }
 
-// Of the placement's region, or of the box; of disks as wide as they are thick. m
+// Size (m) of the placement's region, or of the box; disks are as wide as they are thick.
 Vec3 room_for(const Population& population, const PeriodicBox& box) {
   const std::optional<RegionKeys>& region = population.placement.region;
   Vec3 extent = region ? Vec3(region->upper - region->lower) : box.size;
@@ -166,7 +166,7 @@ Vec3 room_for(const Population& population, const PeriodicBox& box) {
   return extent;
 }
 
-// What the grains of a solid fraction or a fill occupy; m^3. layer: m.
+// Volume (m^3) of the grains of a solid fraction or a fill. layer: m.
 double wanted_volume(const Population& population, const Vec3& room, double layer) {
   if (population.solid_fraction) return *population.solid_fraction * room.prod();
   const FillKeys& fill = *population.fill;

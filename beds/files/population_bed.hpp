@@ -1,5 +1,4 @@
-// What follows from the keys of a population but is not in them: grains from a bed, sizes of a distribution, figures of
-// clumps.
+// Completion of a population: grains from a bed, sizes of a distribution, figures of clumps.
 #pragma once
 
 #include "beds/population/population.hpp"

@@ -81,7 +81,7 @@ public:
     own_ = bodies_.size();
   }
 
-  // Whether none overlap after most_iterations at most.
+  // Pushes grains apart; true if none overlap after at most most_iterations.
   bool relax() {
     double moved = skin();
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -108,7 +108,7 @@ public:
   }
 
 private:
-  // Where its centre may be: up to a face of the region, or anywhere along an axis that the region wraps.
+  // Bounds of its centre: up to a face of the region, or anywhere along an axis that the region wraps.
   Vec3 lower_of(const PackedBody& body) const { return lower_ + body.margin * keeps_away_; }
   Vec3 upper_of(const PackedBody& body) const { return upper_ - body.margin * keeps_away_; }
 
@@ -192,7 +192,7 @@ private:
   class Copies {
   public:
     Copies() = default;
-    // Of grains within this distance (m) of a block.
+    // Copies of grains within this distance (m) of a block.
     Copies(const PackingDomain& ranks, const std::vector<PackedBody>& own, double distance) : ranks_(&ranks) {
       if (ranks.alone()) return;
       for (std::size_t n = 0; n < own.size(); ++n)

@@ -46,7 +46,7 @@ Lattice widest_lattice(const Vec3& extent, std::int64_t count, const std::array<
       if (nz > most[2]) continue;
       const double spacing = std::min({extent[0] / static_cast<double>(nx), extent[1] / static_cast<double>(ny),
                                        extent[2] / static_cast<double>(nz)});
-      // Of lattices with the same spacing, the one with fewest sites to spare is filled most evenly.
+      // Among lattices with the same spacing, the one with fewest spare sites is filled most evenly.
       const bool fewer = spacing == best.spacing && nx * ny * nz < best.count[0] * best.count[1] * best.count[2];
       if (spacing > best.spacing || fewer) best = {{nx, ny, nz}, spacing};
     }

@@ -18,7 +18,7 @@ struct Region {
 
 inline Region whole(const PeriodicBox& box) { return {Vec3::Zero(), box.size}; }
 
-// Whether the region meets itself through the periodic faces of this axis.
+// True if the region meets itself through the periodic faces of this axis.
 bool wraps(const PeriodicBox& box, const Region& region, int axis);
 
 // Throws InputError where the region is not in the box, or empty.
@@ -40,7 +40,7 @@ public:
   UniformSites(const PeriodicBox& box, const Region& region, std::int64_t count, double radius, double clearance,
                std::uint64_t seed);
 
-  // How many grains of this radius (m) have room on a lattice, along each axis.
+  // Largest number of grains of this radius (m) on a lattice along each axis.
   static std::array<std::int64_t, 3> most(const PeriodicBox& box, const Region& region, double radius,
                                           double clearance);
 

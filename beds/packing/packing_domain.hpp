@@ -1,4 +1,4 @@
-// Ranks that place grains together at the start: which part of the box each one answers for, and messages between them.
+// Packing domain: the part of the box in which each rank places grains at the start, and messages between ranks.
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"
@@ -13,12 +13,12 @@ namespace thalweg::beds {
 
 class PackingDomain : public Ranks {
 public:
-  // One process that places all grains of the box; no messages.
+  // Domain of one process that places all grains of the box; no messages.
   explicit PackingDomain(const PeriodicBox& box) : box_(box) {}
 
-  // The ranks of a decomposition, which must outlive this object. reach: m, up to which each also knows the grains
-  // around its block; at least the largest distance of two centres that touch. box: the decomposition's, whose size may
-  // differ from its cells times spacing by rounding.
+  // Domains of the ranks of a decomposition, which must outlive this object. reach: m, distance up to which a rank
+  // also knows the grains around its block, at least the largest distance of two centres that touch. box: the
+  // decomposition's, whose size may differ from its cells times spacing by rounding.
   PackingDomain(const PeriodicBox& box, MPI_Comm communicator, const Decomposition& decomposition, double reach)
       : Ranks(decomposition.ranks() > 1 ? communicator : MPI_COMM_NULL),
         box_(box),
@@ -27,11 +27,11 @@ public:
 
   const PeriodicBox& box() const { return box_; }
 
-  // Grains are not to be placed at random where blocked(centre, radius) says so (m), the same on all ranks.
+  // Sets the places that random packings avoid: those with blocked(centre, radius) (m), the same on all ranks.
   void keep_clear_of(std::function<bool(const Vec3& centre, double radius)> blocked) { blocked_ = std::move(blocked); }
   bool blocked(const Vec3& centre, double radius) const { return blocked_ && blocked_(centre, radius); }
 
-  // Of a point (m, wrapped): whether it is in the block of this rank, and whether it is within reach of it.
+  // True if a point (m, wrapped) is in the block of this rank, and if it is within reach of it.
   bool owns(const Vec3& point) const { return alone() || decomposition_->owner_of(point) == number(); }
   bool knows(const Vec3& point) const { return alone() || decomposition_->reaches(number(), point, reach_); }
 
@@ -45,7 +45,7 @@ public:
     for (const Row& row : rows) homes.push_back(decomposition_->owner_of(Vec3(row.position)));
     return exchanged(std::move(rows), homes);
   }
-  // To all ranks that know the place.
+  // Sends rows to all ranks that know their position.
   template <typename Row>
   std::vector<Row> to_knowing(const std::vector<Row>& rows) const {
     if (alone()) return rows;
@@ -59,14 +59,14 @@ public:
     return exchanged(std::move(copies), homes);
   }
 
-  // Rows that several ranks know, each once, on every rank.
+  // Gathers on every rank the rows that several ranks know, each once.
   template <typename Row>
   std::vector<Row> to_all(std::vector<Row> known) const {
     std::erase_if(known, [&](const Row& row) { return !owns(Vec3(row.position)); });
     return gathered(std::move(known));
   }
 
-  // Only where there are several ranks.
+  // Requires several ranks.
   const Decomposition& decomposition() const { return *decomposition_; }
 
 private:

@@ -50,7 +50,7 @@ InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed) 
                   grains.count, extent.x(), extent.y(), extent.z(), placed));
 }
 
-// A place that a grain tries, or has been given.
+// Place that a grain tries or has been given.
 struct Trial {
   std::int64_t number;
   double radius, position[3];  // m, wrapped
@@ -71,7 +71,7 @@ public:
       placed_cells_.add({ranks.box().wrapped(obstacle.sphere.position), obstacle.sphere.radius});
   }
 
-  // Of the grains from this radius (m) up to another; whether all found a place.
+  // Places the grains from this radius (m) up to another; true if all found a place.
   bool place(double from, double below) {
     std::vector<Trial> trials = first_trials(from, below);
     tried_ = fitted_ = 0;
@@ -90,7 +90,7 @@ public:
     return true;
   }
 
-  // Those that this rank knows, in order.
+  // Placed grains that this rank knows, in order.
   std::vector<PlacedGrain> placed() {
     std::sort(placed_.begin(), placed_.end());
     return std::move(placed_);
@@ -116,8 +116,8 @@ private:
     return made;
   }
 
-  // Takes note of the places that were given, and decides about the trials in this rank's block. Returns what came of
-  // these: given places, and the trials that come next.
+  // Records the places that were given, and decides the trials in this rank's block. Returns these: given places, and
+  // the next trials.
   std::vector<Trial> round(const std::vector<Trial>& known, unsigned attempt) {
     SphereCells trying(ranks_.box(), largest_);
     for (const Trial& trial : known) {
@@ -143,7 +143,7 @@ private:
     placed_.push_back({trial.number, Vec3(trial.position)});
   }
 
-  // Whether so few of the last trials fitted that a grain has no fair chance of a place.
+  // True if so few of the last trials fitted that a grain has no fair chance of a place.
   bool hopeless() {
     if (tried_ < trials_between_checks) return false;
     const bool too_few = fitted_ * most_attempts < tried_;
@@ -185,7 +185,7 @@ std::vector<PlacedGrain> random_packing(const PackingDomain& ranks, const Grains
 
 namespace {
 
-// What a packing of several ranks makes for one process.
+// Centres (m) of a parallel packing in one process.
 std::vector<Vec3> packed_alone(const auto& packing, const PeriodicBox& box, const Region& region,
                                std::span<const double> radii, double clearance, std::uint64_t seed,
                                std::span<const dem::PlacedSphere> obstacles) {

@@ -1,5 +1,5 @@
-// Grains at random: where each one is put depends on the others, so the ranks that need to know work together. The same
-// places on any number of ranks; no rank has more than the grains around its block.
+// Packings at random. The place of each grain depends on the others, so the ranks work together. Places do not depend
+// on the number of ranks; no rank has more than the grains around its block.
 #pragma once
 
 #include "beds/packing/packing.hpp"
@@ -23,7 +23,7 @@ struct GrainsToPlace {
   std::uint64_t seed;
 };
 
-// What grains keep clear of. Each has a number of its own, the same on all ranks.
+// Sphere that grains keep clear of. Each has a number of its own, the same on all ranks.
 struct Obstacle {
   dem::PlacedSphere sphere;
   std::int64_t number;
@@ -36,7 +36,7 @@ struct PlacedGrain {
 };
 
 // The grains that this rank knows (packing_domain.hpp), in order of their numbers. obstacles: those that it knows.
-// Collective. Throws InputError on every rank where the grains do not fit.
+// Collective. Throws InputError on every rank if the grains do not fit.
 //
 // Each grain is put anywhere, again and again until it is clear of all others and of the obstacles (random sequential
 // addition). Beyond about a third of the volume that gets hard. Each rank decides about the places in its block. All
@@ -45,13 +45,13 @@ struct PlacedGrain {
 std::vector<PlacedGrain> random_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                         std::span<const Obstacle> obstacles);
 
-// The same for beds and suspensions that fill up to 0.6 of the volume: grains start at random and are pushed apart, in
+// Packing for beds and suspensions that fill up to 0.6 of the volume: grains start at random and are pushed apart, in
 // proportion to their overlaps, until none overlap (after W. S. Jodrey and E. M. Tory, Phys. Rev. A 32 (1985) 2347).
 // Nearest neighbours are then at least a diameter apart, most of them little more.
 std::vector<PlacedGrain> dense_packing(const PackingDomain& ranks, const GrainsToPlace& grains,
                                        std::span<const Obstacle> obstacles);
 
-// For one process: centres (m), one for each radius (m).
+// Packings in one process: centres (m), one for each radius (m).
 std::vector<Vec3> random_packing(const PeriodicBox& box, const Region& region, std::span<const double> radii,
                                  double clearance, std::uint64_t seed,
                                  std::span<const dem::PlacedSphere> obstacles = {});

@@ -29,7 +29,7 @@ public:
     head->second = static_cast<std::int64_t>(spheres_.size()) - 1;
   }
 
-  // Whether it overlaps one of those for whose numbers `counts` is true. Touching is not overlapping.
+  // True if it overlaps a sphere for whose number `counts` is true. Touching is not overlapping.
   template <typename Counts>
   bool overlaps(const dem::PlacedSphere& sphere, Counts&& counts) const {
     const Cell home = cell_of(sphere.position);

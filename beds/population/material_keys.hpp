@@ -1,5 +1,4 @@
-// How a case describes contacts: the section `contact`, and the material of a population, or of the walls, where it
-// differs.
+// Keys of contacts: the section `contact`, and the material of a population, or of the walls, where it differs.
 #pragma once
 
 #include "core/keys/section_visitor.hpp"
@@ -56,7 +55,7 @@ void check(const MaterialKeys& material, const dem::ContactParameters& contact);
 // The contact with what the material changes.
 dem::ContactParameters changed(dem::ContactParameters contact, const MaterialKeys& material);
 
-// Of walls; empty: they are of each grain's own material.
+// Material of the walls; empty: each grain's own material.
 std::optional<dem::ContactParameters> wall_material_of(const ContactKeys& contact);
 
 }  // namespace thalweg::beds

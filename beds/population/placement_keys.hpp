@@ -1,4 +1,4 @@
-// How a case says where a population of grains is put.
+// Keys of the placement of a population of grains.
 #pragma once
 
 #include "core/base/types.hpp"

@@ -36,7 +36,7 @@ struct OrientationKeys {
   bool operator==(const OrientationKeys&) const = default;
 };
 
-// As many grains as make a settled bed of this depth over the floor of the region, or of the box.
+// Fill: the number of grains that makes a settled bed of this depth over the floor of the region, or of the box.
 struct FillKeys {
   std::optional<double> depth;     // m
   std::optional<double> layers;    // 1; or the depth in reference diameters
@@ -101,7 +101,7 @@ struct FileFigures {
   bool operator==(const FileFigures&) const = default;
 };
 
-// With what follows from sizes, shape and file (population_bed.hpp).
+// Population with the properties that follow from sizes, shape and file (population_bed.hpp).
 struct Population : PopulationKeys {
   double thickness = 0.0;         // m, of disks; 0: spheres
   std::vector<double> diameters;  // m, one a grain; empty: all `diameter`, or from a file
@@ -115,8 +115,8 @@ struct Population : PopulationKeys {
 
   bool from_file() const { return figures.rows > 0; }
   std::int64_t row_count() const;  // number of ids: one for each grain, or for each member of a clump
-  // Of grains that are not from a file, m: the diameter, of a clump that of the sphere (disk) of its volume; the
-  // diameter of the sphere that a grain needs where it is put; the largest of these.
+  // Sizes (m) of grains that are not from a file: the diameter, of a clump that of the sphere (disk) of its volume;
+  // the diameter of the sphere that a grain needs at its place; the largest of these.
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
   double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }
   double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }

@@ -55,8 +55,8 @@ std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows)
 
 namespace {
 
-// From the first member to each (m). A clump may be longer than half a periodic axis, so that the nearest image of the
-// first is not the right one: the way goes from member to near member, each time to the pair that is nearest.
+// Vectors (m) from the first member to each. A clump may be longer than half a periodic axis, so that the nearest
+// image of the first is not the right one: the way goes from member to near member, each time to the nearest pair.
 std::vector<Vec3> places_from_first(std::span<const BedGrain> rows, const PeriodicBox& box) {
   std::vector<Vec3> places(rows.size(), Vec3::Zero());
   std::vector<std::size_t> found{0}, left;

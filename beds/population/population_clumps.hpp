@@ -12,11 +12,11 @@
 
 namespace thalweg::beds {
 
-// Of a population with `shape`. Throws InputError where no clump can be made of it.
+// Shape of the clumps of a population with `shape`. Throws InputError if no clump can be made of it.
 std::shared_ptr<const dem::ClumpShape> clump_shape_of(const Population& population);
 
-// Of one clump of such a population: the given one, or one drawn uniformly from all rotations (K. Shoemake, Graphics
-// Gems III (1992) 124; of disks, from those about y). grain: its number in the population.
+// Orientation of one clump of such a population: the given one, or one drawn uniformly from all rotations (K.
+// Shoemake, Graphics Gems III (1992) 124; of disks, from those about y). grain: its number in the population.
 dem::Quaternion orientation_of(const Population& population, std::size_t grain);
 
 // The grains of a bed file one by one, each either one row or the members of one clump, which follow each other.
@@ -26,7 +26,7 @@ std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows)
 // InputError where they make none.
 dem::ClumpSeed clump_from(std::span<const BedGrain> members, const PeriodicBox& box, double thickness);
 
-// Of `count` clumps of this shape and density (kg/m^3).
+// Figures of `count` clumps of this shape and density (kg/m^3).
 ClumpFigures figures_of(const dem::ClumpShape& shape, double density, std::int64_t count);
 
 }  // namespace thalweg::beds

@@ -1,4 +1,4 @@
-// How a case describes walls for the grains besides the faces of the box (walls.hpp).
+// Keys of walls for the grains besides the faces of the box (walls.hpp).
 #pragma once
 
 #include "core/base/types.hpp"
@@ -11,7 +11,7 @@
 
 namespace thalweg::beds {
 
-// What makes a wall a plate around its point, with two sides and edges.
+// Keys of a plate, a wall around its point with two sides and edges.
 struct PlateKeys {
   Vec3 along = Vec3::UnitX();  // in the plane of the wall; any length but zero
   double length = 0.0;         // m, along it

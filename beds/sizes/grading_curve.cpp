@@ -31,7 +31,7 @@ void add(const NormalPiece& piece, GradingCurve& curve) {
   }
 }
 
-// How many grains are coarser than a size, in units of the number of the smallest grains that have all of the mass.
+// Number of grains coarser than a size, in units of the number of the smallest grains that have all of the mass.
 class NumberCurve {
 public:
   struct Location {
@@ -46,7 +46,8 @@ public:
 
   double total() const { return coarser_.front(); }
 
-  // Where this share of the number is coarser. Summed up from the coarse end, where a few grains have much of the mass.
+  // Location at which this share of the number is coarser. Summed up from the coarse end, where a few grains have much
+  // of the mass.
   Location location_of(double share_coarser) const {
     const double number = share_coarser * total();
     const auto above = std::partition_point(coarser_.begin() + 1, coarser_.end() - 1,

@@ -123,7 +123,7 @@ namespace {
 // The draw of counter_random.hpp that sizes use; placements use small numbers.
 constexpr std::uint64_t size_draw = std::uint64_t{1} << 40;
 
-// For every grain, its place (0 ... count - 1) among the random numbers of all.
+// Place (0 ... count - 1) of every grain among the random numbers of all.
 std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed) {
   std::vector<std::size_t> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), std::size_t{0});

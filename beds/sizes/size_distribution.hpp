@@ -1,4 +1,4 @@
-// How the diameters of a population differ.
+// Size distribution of the grains of a population.
 #pragma once
 
 #include "core/keys/section_visitor.hpp"
@@ -19,7 +19,7 @@ struct SieveKeys {
   bool operator==(const SieveKeys&) const = default;
 };
 
-// How the diameters differ; nothing given: they do not.
+// Keys of a size distribution; nothing given: equal diameters.
 struct SizesKeys {
   std::optional<SizeDistribution> distribution;
   std::optional<double> median;               // m, by number, before the tails are cut
@@ -39,7 +39,7 @@ void describe(SectionVisitor& visit, SizesKeys& sizes, double& diameter);
 
 double sphere_volume(double diameter);  // m^3
 
-// How many grains have a diameter (m).
+// Number of grains with a diameter (m).
 struct SizeCount {
   double diameter;
   std::int64_t count;

@@ -53,7 +53,7 @@ struct ClumpSeed {
   Quaternion principal_orientation() const { return normalised(product(orientation, shape->principal)); }
 };
 
-// What a run begins with.
+// Grains and clumps at the start of a run.
 struct GrainSeeds {
   std::vector<GrainSeed> grains;
   std::vector<ClumpSeed> clumps;  // whose members have ids of their own

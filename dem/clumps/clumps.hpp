@@ -84,9 +84,9 @@ public:
   // Sends every clump to the rank of its centre. Collective.
   void migrate(const Decomposition& decomposition, MPI_Comm communicator);
 
-  // Before the sub-steps: takes over the loads of the store, with torques about the present centres.
+  // Takes the loads of the store, with torques about the present centres; to be called before the sub-steps.
   void gather_loads(const GrainStore& store);
-  // During the sub-steps: sets a load (N) that acts at the centre; the store gets it in equal shares on the members.
+  // Sets a load (N) at the centre during the sub-steps; the store gets it in equal shares on the members.
   void set_central_force(std::size_t n, const Vec3& force, GrainStore& store);
   // Stops the clump along x and y and balances the force on it in these directions, without a torque.
   void stop_along_floor(std::size_t n, PackedGrainState& grains);
@@ -96,7 +96,7 @@ public:
   // Writes position, velocity and spin of all members.
   void place(PackedGrainState& grains, const PeriodicBox& box) const;
 
-  // Of all contacts, loads and the body force, from the store: force (N), and torque (N m) about the centre.
+  // Force (N) and torque (N m) about the centre, of all contacts, loads and the body force, from the store.
   Vec3 force(std::size_t n, const GrainStore& store) const;
   Vec3 torque(std::size_t n, const GrainStore& store) const;
 
@@ -110,7 +110,7 @@ private:
   void gather_load(std::size_t n, const GrainStore& store);
   void add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const;
 
-  // What pulls at a clump besides contacts, about its centre.
+  // Load on a clump besides contacts, about its centre.
   struct Load {
     Vec3 force, torque;
   };

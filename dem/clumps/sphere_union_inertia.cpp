@@ -14,7 +14,7 @@ struct Disk {
   double x, y, radius;
 };
 
-// Of a plane region: area, first and second moments.
+// Area, first and second moments of a plane region.
 struct PlaneMoments {
   enum { a, x, y, xx, yy, xy, count };
   std::array<double, count> value{};
@@ -57,7 +57,7 @@ struct Covered {
   bool operator<(const Covered& other) const { return first < other.first; }
 };
 
-// Of equal disks the first one stays. False: the disk is covered altogether.
+// Finds the covered arcs of disk n; among equal disks the first one stays. False: the disk is covered altogether.
 bool find_covered(const std::vector<Disk>& disks, std::size_t n, std::vector<Covered>& covered) {
   covered.clear();
   const Disk& d = disks[n];
@@ -240,7 +240,7 @@ std::vector<double> heights_of_change(const std::vector<PlacedSphere>& spheres) 
   return heights;
 }
 
-// Where rounding is least.
+// Origin with the least rounding: the mean of the centres.
 Vec3 mean_centre(std::span<const PlacedSphere> spheres) {
   Vec3 sum = Vec3::Zero();
   for (const PlacedSphere& s : spheres) sum += s.position;

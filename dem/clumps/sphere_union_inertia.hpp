@@ -17,7 +17,7 @@
 
 namespace thalweg::dem {
 
-// Of a body of density 1 kg/m^3.
+// Volume, centre and inertia of a body of density 1 kg/m^3.
 struct BodyMoments {
   double volume = 0.0;                                // m^3
   Vec3 centre = Vec3::Zero();                         // m

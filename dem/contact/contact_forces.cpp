@@ -15,7 +15,7 @@ namespace thalweg::dem {
 
 namespace {
 
-// Finds the near ones of all pairs; the others are beyond the range of the law (m) and have no history.
+// Finds the near pairs; the others are beyond the range of the law (m) and have no history.
 void look_for_near_pairs(const PackedGrainState& grains, NeighbourList& list, double range_of_law,
                          const MinimumImage& image) {
   list.near.begin();
@@ -44,8 +44,8 @@ template <typename ContactLaw>
 void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const PeriodicBox& box,
                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
   if (list.near.stale()) look_for_near_pairs(grains, list, law.range(), MinimumImage(box));
-  ContactKernel<ContactLaw> batch(law, grains, list.pair_rows, box, materials, material);
-  // What does not stay in the cache from one sub-step to the next is prefetched.
+  ContactKernel<ContactLaw> batch(law, grains, list.pair_rows.data(), box, materials, material);
+  // Data that do not stay in the cache from one sub-step to the next are prefetched.
   constexpr std::size_t cached = 2 << 20;  // bytes
   constexpr std::size_t bytes_a_pair = sizeof(NearPair) + sizeof(double) * ContactRows::width_of<ContactLaw>;
   const std::vector<NearPair>& near = list.near.pairs();
@@ -55,7 +55,7 @@ void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourLi
     evaluate_near_pairs<false>(near, batch);
 }
 
-// The load by the law on the first body of a contact, whose history it brings up to date; friction: of a wall.
+// Load by the law on the first body of a contact, whose history it updates; friction: of a wall.
 template <typename ContactLaw>
 ContactLoad averaged_load(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
                           std::optional<double> friction, const double* row, typename ContactLaw::History& history) {
@@ -67,7 +67,7 @@ ContactLoad averaged_load(const ContactLaw& law, const ContactMotion& motion, co
   return law(motion, coefficients, constants, history);
 }
 
-// The load of a wall, or of a solid, on a grain.
+// Adds the load of a wall or a solid to a grain.
 template <bool rolls>
 void add_wall_load(const ContactLoad& f, const WallView& view, PackedGrain& grain) {
   const Vec3 tangential(f.tx, f.ty, f.tz);
@@ -134,8 +134,8 @@ void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourL
   });
 }
 
-// What observers see: the force on the first body, with the history as it is; none where they neither touch nor act
-// across the gap.
+// Force on the first body for observers, with the history unchanged; none if the bodies neither touch nor act across
+// the gap.
 template <typename ContactLaw>
 std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
                              std::optional<double> friction, const double* row) {
@@ -164,7 +164,7 @@ void visit_walls(const GrainStore& store, const NeighbourList& list, const Surro
   });
 }
 
-// The same of every touch with a solid: visit(touch, motion, force on the grain).
+// Calls visit(touch, motion, force on the grain) for every touch with a solid that acts.
 template <typename Visitor>
 void visit_solids(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                   const MaterialTable& materials, Visitor&& visit) {
@@ -188,7 +188,7 @@ void visit_solids(const GrainStore& store, const NeighbourList& list, const Surr
   });
 }
 
-// The same of pairs, of which either grain is wanted: visit(contact number, motion, separation, force on the first).
+// Calls visit(contact number, motion, separation, force on the first) for every acting pair with a wanted grain.
 template <typename Wanted, typename Visitor>
 void visit_pairs(const GrainStore& store, const NeighbourList& list, const PeriodicBox& box,
                  const MaterialTable& materials, const Wanted& wanted, Visitor&& visit) {

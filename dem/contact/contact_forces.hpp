@@ -26,7 +26,7 @@ using ContactEndVisitor = std::function<void(std::size_t slot, const ContactEnd&
 void for_each_contact_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                           const MaterialTable& materials, std::span<const char> chosen, const ContactEndVisitor& visit);
 
-// The same of the contacts with walls and solids only; the partner of solid s is -1 - (number of walls + s).
+// Visits the contacts with walls and solids only; the partner of solid s is -1 - (number of walls + s).
 void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                            const MaterialTable& materials, const ContactEndVisitor& visit);
 

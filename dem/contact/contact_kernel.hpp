@@ -1,6 +1,5 @@
-// Pairs of grains in contact, many at once: gathered into arrays, so that the contact law is evaluated for several in
-// one instruction, and scattered in their order.
-//
+// SIMD kernel of the contacts: gathers pairs into arrays, evaluates the contact law for several in one instruction,
+// and scatters the forces in the order of the pairs.
 // A pair beyond the range of the law goes along with a force of zero: nearly all touch, and adding zero changes no bit
 // (no sum here is ever -0, since it began at +0).
 #pragma once
@@ -44,7 +43,7 @@ Double4 shuffled(const Double4& first, const Double4& second) {
 #endif
 }
 
-// Turns four rows into four columns, and back.
+// Transposes four rows into four columns, and back.
 inline void transpose(Double4 (&r)[4]) {
   const Double4 a = shuffled<0, 4, 2, 6>(r[0], r[1]), b = shuffled<1, 5, 3, 7>(r[0], r[1]);
   const Double4 c = shuffled<0, 4, 2, 6>(r[2], r[3]), d = shuffled<1, 5, 3, 7>(r[2], r[3]);
@@ -54,23 +53,24 @@ inline void transpose(Double4 (&r)[4]) {
   r[3] = shuffled<2, 3, 6, 7>(b, d);
 }
 
-template <typename ContactLaw>
+template <IsContactLaw ContactLaw>
 class ContactKernel {
 public:
   static constexpr int capacity = 64;
   static constexpr int lanes = 8;  // whole vectors: the last one is filled up with copies of the first pair
 
-  // rows: of the pairs of the list; material: of every slot.
-  ContactKernel(const ContactLaw& law, PackedGrainState& grains, ContactRows& rows, const PeriodicBox& box,
+  // rows: ContactRows::width_of<ContactLaw> doubles of every pair; material: of every slot.
+  ContactKernel(const ContactLaw& law, PackedGrainState& grains, double* rows, const PeriodicBox& box,
                 const MaterialTable& materials, std::span<const std::uint8_t> material)
-      : law_(law), grains_(grains), rows_(rows.data()), image_(box), materials_(materials), material_(material) {
+      : law_(law), grains_(grains), rows_(rows), image_(box), materials_(materials), material_(material) {
     // One material's numbers are the same in all lanes, so they are put there once.
     if (materials.count() > 1) return;
     const std::vector<double>& only = materials.pair(0, 0).coefficients;
     for (std::size_t n = 0; n < coefficients; ++n) std::fill_n(coefficient_[n], capacity, only[n]);
   }
 
-  // near: at most `capacity`. fetch: whether to prefetch grains and rows of as many of `behind`, pairs that come later.
+  // near: at most `capacity` pairs. fetch: prefetches grains and rows of as many of `behind`, the pairs that come
+  // later.
   template <bool fetch>
   void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind) {
     const int count = static_cast<int>(near.size()), rounded = (count + lanes - 1) / lanes * lanes;
@@ -103,7 +103,7 @@ private:
     std::memcpy(last + k, &r[3], sizeof(Double4));
   }
 
-  // What lane k of consecutive lanes has, as a struct of doubles.
+  // Values of lane k of consecutive lanes, as a struct of doubles.
   template <typename Doubles, std::size_t... n>
   static Doubles taken(const Lane* from, int k, std::index_sequence<n...>) {
     return Doubles{from[n][k]...};
@@ -113,7 +113,7 @@ private:
     return taken<Doubles>(from, k, std::make_index_sequence<doubles_in<Doubles>>());
   }
 
-  // Inlined, because to the compiler a function that only asks does nothing, and a call of it can go.
+  // Force-inlined: compilers may drop calls to a function that only prefetches, because it has no visible effect.
   [[gnu::always_inline]] void prefetch(const NearPair& next) const {
     const char* values = reinterpret_cast<const char*>(row(next));
     for (std::size_t line = 0; line < width * sizeof(double); line += 64) __builtin_prefetch(values + line, 1);

@@ -1,4 +1,4 @@
-// Which pairs of a contact list are so near that their law may act soon: a list within the list. In a bed at rest
+// Inner neighbour list: the pairs of a neighbour list are so near that their law may act soon: a list within the list. In a bed at rest
 // nearly all of them do touch, so that a sub-step need not look at the others of the skin.
 //
 // A pair is near if its gap is below the range of the law (contact_law.hpp, or of lubrication.hpp) plus a margin. Two
@@ -15,7 +15,7 @@ namespace thalweg::dem {
 
 struct NearPair {
   std::uint32_t first, second;  // slots
-  std::uint32_t pair;           // number in the contact list
+  std::uint32_t pair;           // number in the neighbour list
 };
 
 class InnerNeighbourList {
@@ -23,7 +23,7 @@ public:
   explicit InnerNeighbourList(double margin = 0.0) : margin_(margin) {}
 
   double margin() const { return margin_; }  // m
-  // Whether the whole list of pairs must be searched again.
+  // True if the whole list of pairs must be searched again.
   bool stale() const { return !known_ || 3.0 * moved_ > margin_; }
 
   // Starts a new search: the list is empty.

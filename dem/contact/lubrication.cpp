@@ -35,7 +35,7 @@ LubricationLoad averaged_load(const LubricationResistance& resistance, const Vec
           resistance.mixed * normal.cross(sliding) - resistance.rolling * rolling};
 }
 
-// What the force asks of a grain.
+// Properties of a grain that the force depends on.
 struct MovingSphere {
   double radius;
   Vec3 velocity, spin;

@@ -72,7 +72,7 @@ using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm,
 void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit);
 
-// The same for walls and solids only, with the partner as for_each_wall_contact() gives it.
+// Visits the forces of walls and solids only, with the partner as for_each_wall_contact() gives it.
 void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit);
 

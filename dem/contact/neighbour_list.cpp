@@ -61,14 +61,14 @@ ContactBodies contact_bodies(const PairContact& c, const GrainStore& store, cons
   return {pair.damping.critical(mass), pair.rolling_friction, inertia};
 }
 
-// Of a grain with a wall or a solid, of which the rolling friction is.
+// Bodies of a contact of a grain with a wall or a solid, which has this rolling friction.
 ContactBodies contact_bodies(std::size_t slot, double rolling_friction, const GrainStore& store,
                              const MaterialTable& materials) {
   return {materials.wall(store.material[slot]).damping.critical(store.mass[slot]), rolling_friction,
           rolling_inertia(store, static_cast<std::uint32_t>(slot))};
 }
 
-// Of contact n.
+// Key of contact n.
 ContactKey key_of(const std::vector<PairContact>& contacts, std::size_t n, const GrainStore& store, std::size_t) {
   return {store.id[contacts[n].first], store.id[contacts[n].second]};
 }
@@ -85,7 +85,7 @@ std::size_t rows_of(const std::vector<Contact>& contacts) {
   return contacts.size() * (std::is_same_v<Contact, NearSolid> ? touches_per_solid : 1);
 }
 
-// Where the doubles that these contacts keep are among those of all contacts.
+// Columns of the doubles of these contacts among those of all contacts.
 std::vector<std::size_t> columns_of(const ContactRows& rows, std::span<const HistoryPart> all) {
   std::vector<std::size_t> columns;
   for (const HistoryPart& part : history_parts_of(rows.law())) {
@@ -158,7 +158,7 @@ std::span<const SolidTouch> touches_of(SolidTouches& touches, const NeighbourLis
   });
 }
 
-// From the last touch to the first: keys then rise.
+// Touches are numbered from the last to the first, so that keys ascend.
 GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row) {
   return wall_key(static_cast<std::uint32_t>(walls + touches_per_solid * solid + (touches_per_solid - 1 - row)));
 }
@@ -177,7 +177,7 @@ NeighbourList find_contacts(const GrainStore& store, const Surroundings& around,
   bodies.clear();
   const std::span<const Plane> walls = around.walls;
   for (std::size_t s = 0; s < store.owned; ++s)
-    // From the last wall to the first: the keys -1 - wall then rise.
+    // The walls are taken from the last to the first, so that the keys -1 - wall ascend.
     for (std::size_t w = walls.size(); w-- > 0;) {
       if (!(walls[w].seen_from(store.position[s], around.box).distance <= store.radius[s] + range)) continue;
       list.walls.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(w)});

@@ -31,8 +31,8 @@ struct WallContact {
   std::uint32_t wall;
 };
 
-// What the contacts of one kind (pairs, or walls) hold for their law, one row of doubles per contact: its history, then
-// its constants (contact_law.hpp), then zeros up to whole vectors.
+// Data of the contacts of one kind (pairs, or walls) for their law, one row of doubles per contact: its history, its
+// constants (contact_law.hpp), then zeros up to whole vectors.
 class ContactRows {
 public:
   ContactRows() : ContactRows({}, {}) {}
@@ -81,22 +81,22 @@ struct NeighbourList {
   }
 };
 
-// Where the contacts with walls and solids are among the ids of partners: -1 - w for wall w, and behind the walls -1 -
-// (walls + touches_per_solid s + n) for touch n with solid s.
+// Keys of contacts among the ids of partners: -1 - w for wall w, then -1 - (walls + touches_per_solid s + n) for touch
+// n with solid s.
 GlobalId solid_key(std::size_t walls, std::size_t solid, std::size_t row);
 
-// What a grain at a position (m) touches of the entries first to last - 1 of the list's solids, its own, each with the
-// row of its history. range: of the law, m.
+// Touches of a grain at a position (m) with entries first to last - 1 of the list's solids, its own, each with the row
+// of its history. range: of the law, m.
 std::span<const SolidTouch> touches_of(SolidTouches& touches, const NeighbourList& list, std::size_t first,
                                        std::size_t last, const Vec3& position, double radius, double range);
 
-// The row of a touch among those of the list.
+// Row of a touch among those of the list.
 inline std::size_t row_of(const SolidTouch& touch) { return touch.near * touches_per_solid + touch.row; }
 
-// The parts of the histories of all contacts of the list: contacts of pairs and of walls may have different ones.
+// Parts of the histories of all contacts of the list; pairs and walls may have different ones.
 std::vector<HistoryPart> history_parts_of(const NeighbourList& list);
 
-// What grains may touch besides each other.
+// Surroundings of the grains: everything that they may touch besides each other.
 struct Surroundings {
   PeriodicBox box;
   std::span<const Plane> walls;         // where they are now
@@ -110,7 +110,7 @@ struct Surroundings {
 NeighbourList find_contacts(const GrainStore& store, const Surroundings& around, const MaterialTable& materials,
                             double range, double largest_radius);
 
-// The histories that are not zero, sorted by ids, with the doubles of history_parts_of(). walls: their number.
+// Histories that are not zero, sorted by ids, with the doubles of history_parts_of(). walls: their number.
 ContactHistories histories_of(const NeighbourList& list, const GrainStore& store, std::size_t walls);
 
 // Gives the contacts of the list their histories; those (sorted by ids) of pairs not in the list are dropped.

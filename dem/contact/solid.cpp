@@ -10,7 +10,7 @@ namespace thalweg::dem {
 
 namespace {
 
-// Of the surface from a point, m.
+// Largest distance (m) of the surface from a point.
 double farthest_from(const SolidSurface& surface, const Vec3& point) {
   return (surface.upper() - point).cwiseAbs().cwiseMax((surface.lower() - point).cwiseAbs()).norm();
 }

@@ -33,7 +33,7 @@ public:
   Vec3 velocity_at(const Vec3& point) const {  // m/s, of the solid at a point in space
     return turns_ ? Vec3(velocity_ + spin_.cross(point - centre_)) : velocity_;
   }
-  // From the lowest to the highest coordinates, widened where it turns, m.
+  // Bounds (m) of its coordinates, widened if it turns.
   const Vec3& lower() const { return lower_; }
   const Vec3& upper() const { return upper_; }
   // No point of the surface has moved by more than this from one place to the other, m.

@@ -33,8 +33,9 @@ struct NearSolid {
   std::vector<Image> images;
 };
 
-// How deep a sphere (m) is in the solids: its radius less the distance of its centre from the nearest surface, infinite
-// where the centre is inside; negative: it is clear of them. The number of that solid; -1: none is near.
+// Depth (m) of a sphere in the solids, and the number of the solid. Depth is the radius less the distance of the
+// centre from the nearest surface, infinite if the centre is inside, negative if the sphere is clear. Number -1: none
+// is near.
 struct SolidDepth {
   double depth;  // m
   int solid;
@@ -77,8 +78,8 @@ public:
     }
   }
 
-  // What a grain at a position (m), with its radius and the range of the law (m), touches of these entries, its own.
-  // normal_of(number of the entry, row): that of the last evaluation; zero: the row has no history.
+  // Touches of a grain at a position (m), with its radius and the range of the law (m), with its own entries.
+  // normal_of(number of the entry, row): normal at the last evaluation; zero if the row has no history.
   template <typename NormalOf>
   std::span<const SolidTouch> of(std::span<const NearSolid> near, std::size_t first, std::size_t last,
                                  const Vec3& position, double radius, double range, NormalOf normal_of) {
@@ -86,12 +87,12 @@ public:
     match(first, normal_of);
     return touches_;
   }
-  // Whether a row of an entry was given to one of these touches.
+  // True if a row of an entry was given to one of these touches.
   bool taken(std::size_t first, std::size_t number, std::size_t row) const {
     return taken_[(number - first) * touches_per_solid + row] != 0;
   }
 
-  // Whether such a grain is inside one of these solids, or as deep in one as half its radius.
+  // True if such a grain is inside one of these solids, or at least half its radius deep in one.
   bool is_deep(std::span<const NearSolid> near, std::size_t first, std::size_t last, const Vec3& position,
                double radius);
 

@@ -229,7 +229,7 @@ double SolidSurface::distance_to(const Parts& parts, const Vec3& point) const {
   return nearest;
 }
 
-// By the triangles that a line from the point along x crosses.
+// Counts the triangles that a line from the point along x crosses.
 bool SolidSurface::holds(const Vec3& point) const {
   if (rounding_ > 0.0) return (point - corners_.front().point).norm() < rounding_;
   if ((point.array() < lower_.array()).any() || (point.array() > upper_.array()).any()) return false;

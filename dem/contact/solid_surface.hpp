@@ -54,7 +54,8 @@ public:
   // The minima among these parts that are nearer than a distance (m), appended to `views`.
   void look(const Parts& parts, const Vec3& point, double distance, std::vector<SurfaceView>& views) const;
 
-  // Of a point from the nearest of these parts, on either side of the surface, m; infinite if there are none.
+  // Distance (m) of a point from the nearest of these parts, on either side of the surface; infinite if there are
+  // none.
   double distance_to(const Parts& parts, const Vec3& point) const;
 
   bool holds(const Vec3& point) const;  // whether it is inside

@@ -1,5 +1,6 @@
-// What contact laws are made of. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp, which stand alone, or
-// rolling_friction.hpp and liquid_bridge.hpp, which add to another law. contact_laws.hpp has them all. Such a class has
+// Building blocks of contact laws. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp stand alone,
+// rolling_friction.hpp and liquid_bridge.hpp add to another law, and contact_laws.hpp lists them all. The concept
+// IsContactLaw below checks that such a class has
 //
 //   Coefficients    doubles that two materials have together, among them `damping_ratio` and `damping` (material.hpp);
 //                   the last one is `friction`, which walls replace by theirs
@@ -10,7 +11,7 @@
 //   range()         m, the gap up to which it may act: beyond it there is no force and no history
 //   operator()(motion, coefficients, constants, history)   the load; brings the history to the end of the step
 //
-// Nobody else needs to know what these doubles mean.
+// No other code interprets these doubles.
 //
 // v is the velocity of the first body's surface against the second's at the contact, n the unit normal from the second
 // body to the first, delta the overlap. Force on the first body: F_n n + F_t. SI units.
@@ -18,8 +19,10 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <utility>
 
 namespace thalweg::dem {
@@ -33,7 +36,7 @@ struct ContactMotion {
   double wx = 0, wy = 0, wz = 0;  // rad/s, spin of the first body against the second; for laws that roll
 };
 
-// What a law is told of the two bodies of a contact when it is listed.
+// Properties of the two bodies of a contact, given to the law when the contact is listed.
 struct ContactBodies {
   double critical_damping;  // 2 sqrt(k m*), kg/s, or kg/(s m^1/2) of elastic spheres (material.hpp)
   double rolling_friction;  // mu_r
@@ -51,18 +54,35 @@ struct HistoryPart {
   std::size_t size;
 };
 
-// The doubles of all these parts.
-inline std::size_t doubles_of(std::span<const HistoryPart> parts) {
+// Number of doubles in all these parts.
+constexpr std::size_t doubles_of(std::span<const HistoryPart> parts) {
   std::size_t size = 0;
   for (const HistoryPart& part : parts) size += part.size;
   return size;
 }
 
-// Doubles in a struct of nothing else.
+// Number of doubles in a struct of doubles.
 template <typename Doubles>
 inline constexpr std::size_t doubles_in = sizeof(Doubles) / sizeof(double);
 
-// For laws that add to another: joined parts, and the histories themselves.
+// The form of a law. Its history is as long as the parts that it names.
+template <typename Law>
+concept IsContactLaw = requires(const Law& law, const ContactMotion& motion,
+                                const typename Law::Coefficients& coefficients,
+                                const typename Law::Constants& constants, typename Law::History& history,
+                                const ContactBodies& bodies) {
+  { coefficients.damping_ratio } -> std::convertible_to<double>;
+  { coefficients.damping } -> std::convertible_to<double>;
+  { coefficients.friction } -> std::convertible_to<double>;
+  { Law::constants_of(bodies) } -> std::same_as<typename Law::Constants>;
+  { law.range() } -> std::same_as<double>;
+  { law(motion, coefficients, constants, history) } -> std::same_as<ContactLoad>;
+  requires std::same_as<decltype(Law::rolls), const bool>;
+  requires doubles_of(Law::history_parts)
+  == std::tuple_size_v<typename Law::History>;
+};
+
+// Joined parts and histories, for laws that add to another.
 template <std::size_t n>
 constexpr std::array<HistoryPart, n + 1> joined(const std::array<HistoryPart, n>& parts, const HistoryPart& last) {
   std::array<HistoryPart, n + 1> all{};
@@ -126,7 +146,7 @@ inline Friction friction_of(const ContactMotion& c, double closing, double norma
   const double fx = stiffness * x + damping * ux, fy = stiffness * y + damping * uy, fz = stiffness * z + damping * uz;
   const double tangential = std::sqrt(fx * fx + fy * fy + fz * fz), limit = friction * std::fabs(normal);
   const double hold = tangential > limit ? limit / tangential : 1.0;
-  // What is left of the spring when the dashpot keeps its share of the shortened force.
+  // The share of the spring that is lost while the dashpot keeps its share of the shortened force.
   const double share = damping > 0.0 && stiffness > 0.0 ? (1.0 - hold) * damping / stiffness : 0.0;
   return {-hold * fx, -hold * fy, -hold * fz, {hold * x - share * ux, hold * y - share * uy, hold * z - share * uz}};
 }

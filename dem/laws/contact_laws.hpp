@@ -20,7 +20,7 @@ struct LawChoice {
   bool at_surface = false;        // with solids, whose law keeps the normal
 };
 
-// Calls visit(std::type_identity<Springs>()) with what is the same of a law in a liquid and without one.
+// Calls visit(std::type_identity<Springs>()) with the properties that a law has with and without a liquid.
 template <typename Visitor>
 decltype(auto) with_spring_law(Law law, Visitor&& visit) {
   switch (law) {
@@ -55,13 +55,13 @@ decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& vis
   return common.film_viscosity > 0.0 ? in(std::type_identity<ContactFilm>()) : in(std::type_identity<NoFilm>());
 }
 
-// The same of contacts with solids.
+// with_law() for contacts with solids.
 template <typename Visitor>
 decltype(auto) with_surface_law(const LawChoice& choice, double time_step, Visitor&& visit) {
   return with_law(choice, time_step, [&](const auto& law) -> decltype(auto) { return visit(AtSurface(law)); });
 }
 
-// Whichever the choice is.
+// with_law() or with_surface_law(), as the choice says.
 template <typename Visitor>
 decltype(auto) with_either_law(const LawChoice& choice, Visitor&& visit) {
   return choice.at_surface ? with_surface_law(choice, 0.0, visit) : with_law(choice, 0.0, visit);

@@ -16,7 +16,7 @@ namespace thalweg::dem {
 enum class Law { linear, hertz_mindlin };
 std::vector<NamedChoice<Law>> choices_of(Law);  // its words in a case file
 
-// Of liquid_bridge.hpp; the same for all materials of a run.
+// Parameters of liquid_bridge.hpp, the same for all materials of a run.
 struct LiquidBridgeParameters {
   double surface_tension = 0.0;  // N/m, >= 0
   double contact_angle = 0.0;    // rad, from 0 to below pi/2
@@ -47,14 +47,14 @@ struct ContactParameters {
   double least_normal_force() const { return attraction ? -std::numeric_limits<double>::infinity() : 0.0; }  // N
 };
 
-// How long a collision lasts: half a period of the spring with its dashpot. One of the two.
+// Duration of a collision, half a period of the spring with its dashpot; exactly one of the two is given.
 struct ContactDuration {
   std::optional<double> seconds;
   std::optional<double> fluid_steps;
   bool operator==(const ContactDuration&) const = default;
 };
 
-// What a case says of the stiffness of a linear contact; that of ContactParameters follows from it.
+// Keys of the stiffness of a linear contact, from which that of ContactParameters follows.
 struct StiffnessKeys {
   std::optional<double> normal, tangential;  // N/m
   std::optional<ContactDuration> duration;   // in place of `normal`
@@ -66,7 +66,7 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
 // Throws InputError naming the first parameter that is impossible.
 void check(const ContactParameters& parameters);
 
-// For checks of laws: throw InputError with name, value and remedy unless the parameter is good.
+// Checks for laws: throw InputError with name, value and remedy unless the parameter is good.
 void require(bool good, const char* name, double value, const char* unit, const char* remedy);
 void require_not_negative(const char* name, double value, const char* unit);
 

@@ -62,12 +62,13 @@ struct HertzMindlin {
   // contact as its inverse to the 2/5.
   static constexpr double overlaps_per_stiffness = 1.5, impacts_per_stiffness = 2.5;
 
-  // What sets the stiffness, its key, and the unit of the dashpot.
+  // The parameter that sets the stiffness, its key, and the unit of the dashpot.
   static constexpr double ContactParameters::*stiffness = &ContactParameters::youngs_modulus;
   static constexpr const char *stiffness_key = "youngs_modulus", *damping_unit = "kg/(s m^1/2)";
 
   static void check(const ContactParameters& parameters);  // throws InputError
-  // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
+  // Property that makes a contact of a grain with another, or with a wall, softer; completes "a lower ..." in a
+  // message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 };
 

@@ -34,10 +34,10 @@ public:
 
   // effective_mass (kg): m1 m2/(m1 + m2) of two grains, m of a grain against a wall.
   double coefficient(double effective_mass) const { return damping_ratio_ * critical(effective_mass) + constant_; }
-  // That of a contact which just does not swing, 2 sqrt(k m*).
+  // Critical coefficient, 2 sqrt(k m*), of a contact that just does not oscillate.
   double critical(double effective_mass) const;
 
-  // What a law adds up to coefficient().
+  // Writes the two terms of coefficient() for a law.
   template <typename Coefficients>
   void write_into(Coefficients& k) const {
     k.damping_ratio = damping_ratio_;
@@ -75,7 +75,7 @@ public:
   int count() const { return count_; }
   const Entry& pair(int a, int b) const { return pairs_[static_cast<std::size_t>(a) * count_ + b]; }
   const Entry& wall(int material) const { return walls_[material]; }
-  // What all materials have in common: law, attraction, tangential and rolling damping, liquid bridges.
+  // Parameters that all materials have in common: law, attraction, tangential and rolling damping, liquid bridges.
   const ContactParameters& common() const { return common_; }
   bool rolling_friction() const { return rolling_friction_; }  // whether any pair of grains has it
 
@@ -86,7 +86,7 @@ private:
   std::vector<Entry> pairs_, walls_;
 };
 
-// As the law reads them.
+// Coefficients as the law reads them.
 template <typename Coefficients>
 Coefficients coefficients_of(const MaterialTable::Entry& entry) {
   Coefficients coefficients;
@@ -105,8 +105,8 @@ double contact_time(double normal_stiffness, double effective_mass, double dampi
 // pi/beta.
 double stiffness_lasting(double duration, const ContactParameters& parameters, double effective_mass);
 
-// The same of any law, between grains of one material, and against a wall of another. effective_radius: m, used by
-// elastic spheres only.
+// Contact time (s) of any law, between grains of one material and against a wall of another. effective_radius: m, used
+// by elastic spheres only.
 double contact_time(const ContactParameters& parameters, double effective_mass, double effective_radius);
 double wall_contact_time(const ContactParameters& parameters, const ContactParameters& wall, double mass,
                          double radius);
@@ -120,14 +120,14 @@ double longest_step(const ContactParameters& parameters, double effective_mass, 
 double longest_wall_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
                          double radius);
 
-// By which a step may exceed its longest, relative: rounding of a quotient.
+// Relative amount by which a step may exceed its longest: rounding of a quotient.
 inline constexpr double rounding_of_a_step = 1e-9;
 
 // Throws InputError if the time step (s) is longer than longest_step().
 void check_time_step(const ContactParameters& parameters, double effective_mass, double effective_radius,
                      double time_step);
 
-// The same of a contact with walls.
+// check_time_step() for contacts with walls.
 void check_wall_time_step(const ContactParameters& parameters, const ContactParameters& wall, double mass,
                           double radius, double time_step);
 

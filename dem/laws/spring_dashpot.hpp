@@ -53,12 +53,13 @@ struct SpringDashpot {
   // as the inverse of its root.
   static constexpr double overlaps_per_stiffness = 1.0, impacts_per_stiffness = 2.0;
 
-  // What sets the stiffness, its key, and the unit of the dashpot.
+  // The parameter that sets the stiffness, its key, and the unit of the dashpot.
   static constexpr double ContactParameters::*stiffness = &ContactParameters::normal_stiffness;
   static constexpr const char *stiffness_key = "normal_stiffness", *damping_unit = "kg/s";
 
   static void check(const ContactParameters& parameters);  // throws InputError
-  // What makes a contact of a grain and another, or a wall, softer; completes "a lower ..." in a message.
+  // Property that makes a contact of a grain with another, or with a wall, softer; completes "a lower ..." in a
+  // message.
   static std::string softer(const ContactParameters& grain, const ContactParameters& other);
 };
 

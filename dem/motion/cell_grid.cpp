@@ -7,7 +7,7 @@ namespace thalweg::dem {
 
 namespace {
 
-// Of slabs that divide one axis of the box, the one a coordinate lies in; the first where it is not a number.
+// Slab that a coordinate lies in, of those that divide one axis of the box; the first if it is not a number.
 int slab_of(double coordinate, double size, int slabs) {
   const double place = coordinate / size * slabs;
   return place > 0.0 ? static_cast<int>(std::min(place, static_cast<double>(slabs - 1))) : 0;

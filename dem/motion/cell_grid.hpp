@@ -37,7 +37,7 @@ private:
     std::array<int, 3> cell{};
   };
 
-  // Of two neighbouring cells, the one with the lower number visits their pairs.
+  // Visits pairs of neighbouring cells from the one with the lower number.
   template <typename Visitor>
   void visit_pairs_of(std::size_t cell, const std::array<Neighbours, 3>& near, Visitor&& visit) const {
     for (int k = 0; k < near[2].count; ++k)

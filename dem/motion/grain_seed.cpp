@@ -27,7 +27,7 @@ void check_ids(std::span<const GrainSeed> seeds) {
   }
 }
 
-// By how much two grains overlap where that is too much, m; else 0.
+// Overlap of two grains (m) if it is larger than allowed; else 0.
 double overlap_of(const GrainSeed& a, const GrainSeed& b, const PeriodicBox& box, double allowed_overlap) {
   if (is_fixed(a.motion) && is_fixed(b.motion)) return 0.0;
   if (a.clump >= 0 && a.clump == b.clump) return 0.0;

@@ -26,7 +26,7 @@ struct GrainSeed {
 
   double thickness = 0.0;  // m, of a disk in the x-z plane; 0: a sphere
 
-  // Of a member of a clump, as with_members() of clump_seed.hpp fills them in.
+  // Members of clumps only, filled in by with_members() of clump_seed.hpp.
   GlobalId clump = -1;            // its id; -1: the grain is one of its own
   double clump_mass = 0.0;        // kg
   double clump_least_mass = 0.0;  // kg, the least that its contacts feel
@@ -47,7 +47,7 @@ inline constexpr double allowed_initial_overlap = 1e-6;
 void check(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
            double allowed_overlap = allowed_initial_overlap);
 
-// The same of a part of the grains, with any ids. largest_radius: m, of all grains.
+// Checks a part of the grains, with any ids. largest_radius: m, of all grains.
 void check_part(std::span<const GrainSeed> seeds, const PeriodicBox& box, std::span<const Plane> walls,
                 double allowed_overlap, double largest_radius);
 

@@ -10,8 +10,8 @@
 
 namespace thalweg::dem {
 
-// What the forces may change. A held component keeps the velocity it was given (zero: it does not move). A member of a
-// clump (clumps.hpp) is moved by the clump, and what it holds is what the clump holds.
+// Components of the motion that forces may change. A held component keeps the velocity it was given (zero: it does not
+// move). A member of a clump (clumps.hpp) is moved by the clump and holds what the clump holds.
 enum class Motion : std::uint8_t { free = 0, held_translation = 1, held_rotation = 2, fixed = 3, member = 4 };
 
 inline bool holds_translation(Motion motion) { return (static_cast<unsigned>(motion) & 1u) != 0; }

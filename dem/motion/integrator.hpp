@@ -1,4 +1,4 @@
-// How grains are moved in a sub-step.
+// Integrators of the motion in a sub-step.
 #pragma once
 
 #include "core/keys/named_choice.hpp"

@@ -1,4 +1,4 @@
-// How a case says that walls and rigid assemblies of grains move (prescribed_motion.hpp).
+// Keys of the motion of walls and rigid assemblies of grains (prescribed_motion.hpp).
 #pragma once
 
 #include "core/base/types.hpp"
@@ -16,7 +16,7 @@ struct RotationKeys {
   bool operator==(const RotationKeys&) const = default;
 };
 
-// Of a population that moves as one rigid body.
+// Keys of a population that moves as one rigid body.
 struct MotionKeys {
   Vec3 velocity = Vec3::Zero();  // m/s
   std::optional<Oscillation> oscillation;

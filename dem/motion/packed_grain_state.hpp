@@ -1,6 +1,6 @@
-// What the sub-steps work on: the moving state of all grains a rank knows, packed so that a contact finds everything of
-// a grain in neighbouring cache lines and takes three components with one load. GrainStore has the same numbers for
-// everybody else; they are copied here before the sub-steps of a fluid step and back after them.
+// Grain state during the sub-steps, packed so that a contact finds all of a grain in neighbouring cache lines and
+// takes three components with one load. It holds all grains that a rank knows. GrainStore has the same numbers for all
+// other code; they are copied here before the sub-steps of a fluid step and back after them.
 #pragma once
 
 #include "dem/motion/grain_store.hpp"
@@ -11,7 +11,7 @@
 
 namespace thalweg::dem {
 
-// Four doubles that the processor handles at once: x, y, z and one more.
+// Four doubles in one register: x, y, z and one more.
 using Double4 = double __attribute__((vector_size(32)));
 
 inline constexpr Double4 first_three{1.0, 1.0, 1.0, 0.0};  // as a factor: without the last entry
@@ -50,15 +50,15 @@ public:
 
   // An owned grain does not move along the floor, in x and y: stops it, and has its contacts take the load along them.
   void stop_along_floor(std::size_t slot);
-  // Those that have been stopped since the last forget_stops().
+  // Slots that have been stopped since the last forget_stops().
   std::span<const std::size_t> stopped() const { return stopped_; }
   void forget_stops() { stopped_.clear(); }
 
   // Sets the contact forces of all grains to zero.
   void forget_forces();
 
-  // An upper bound of the present speeds (m/s): of ghosts, and of owned grains those of the last drift, unless
-  // `written` says that velocities have been written since.
+  // Upper bound of the present speeds (m/s) of ghosts and of owned grains, for the latter at the last drift;
+  // `written`: velocities have been written since, so all are searched.
   double speed_bound(bool written) const;
 
   std::size_t size() const { return grains_.size(); }
@@ -67,7 +67,7 @@ public:
   PackedGrain& operator[](std::size_t slot) { return grains_[slot]; }
 
 private:
-  // What pulls at an owned grain besides its contacts, and how readily it follows.
+  // Load on an owned grain besides its contacts, with its inverse mass and inertia.
   struct Load {
     Double4 force;   // N; last: 1/m, 1/kg
     Double4 torque;  // N m; last: 1/I, 1/(kg m^2)

@@ -13,8 +13,8 @@
 
 namespace thalweg::dem {
 
-// What makes a plane a plate: how far it goes from its middle, along one direction in the plane and across it. A plate
-// has no thickness. In a periodic box there are its images too; one as long as the box has no ends there.
+// Extent of a plate: how far a plane goes from its middle, along one direction in the plane and across it. A plate has
+// no thickness. In a periodic box it has images; one as long as the box has no ends there.
 struct PlateExtent {
   Vec3 along = Vec3::UnitX();  // unit, normal to the plane's normal
   double half_length = 0.0;    // m, along it
@@ -35,15 +35,15 @@ struct Plane {
   Vec3 velocity = Vec3::Zero();   // m/s
   Oscillation oscillation;        // on top of the velocity
   std::optional<PlateExtent> plate;
-  // Of a floor at rest, whose normal is +z: a free grain that touches it does not move along it, but may turn, as if a
-  // force at its centre held it. At most one wall.
+  // True for a rough floor: at rest, with normal +z. A free grain that touches it does not move along it but may turn,
+  // as if a force at its centre held it. At most one wall may be rough.
   bool rough = false;
 
   WallView seen_from(const Vec3& position, const PeriodicBox& box) const {
     const Vec3 from_point = position - point;
     return plate ? seen_as_plate(from_point, box) : WallView{from_point.dot(normal), normal};
   }
-  // Whether its place or its velocity changes with time: of a plane, a constant velocity within itself changes neither.
+  // True if its position or velocity changes with time; a constant velocity of a plane within itself changes neither.
   bool changes() const;
   // The wall as it is at one time (s), with the velocity of another.
   Plane at(double time, double time_of_velocity) const;

@@ -22,7 +22,7 @@ struct GhostRow {
   std::int64_t owner;
 };
 
-// What a sub-step's message holds of a grain.
+// Data of a grain in the message of a sub-step.
 struct MotionRow {
   double value[9];
 };

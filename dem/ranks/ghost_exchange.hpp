@@ -27,9 +27,9 @@ public:
   // Positions must be wrapped. Collective.
   void build(GrainStore& store);
 
-  // Until the next build(), refresh(PackedGrainState&) leaves out ghosts that are in none of these pairs. pairs: all
-  // pairs of an owned grain with another one up to some gap, the same gap on every rank, so that both ranks of a pair
-  // know of it and one sends what the other expects.
+  // Makes refresh(PackedGrainState&) leave out ghosts that are in none of these pairs, until the next build(). pairs:
+  // all pairs of an owned grain with another one up to some gap, the same gap on every rank, so that both ranks of a
+  // pair know it and one sends what the other expects.
   void follow(std::span<const PairContact> pairs, const GrainStore& store);
 
   // Brings the ghosts' position, velocity and angular velocity up to date.

@@ -10,8 +10,9 @@
 
 namespace thalweg::dem {
 
-// The same layout with cuts that give every slab of ranks along an axis as many grains, or nothing where the fullest
-// rank has less than a tenth more than the mean, or no cut would move. Positions must be wrapped. Collective.
+// Layout of the same ranks with cuts that give every slab of ranks along an axis the same number of grains; nothing if
+// the fullest rank has less than a tenth more than the mean, or if no cut would move. Positions must be wrapped.
+// Collective.
 std::optional<Decomposition> balanced_cuts(const Decomposition& decomposition, const GrainStore& store,
                                            MPI_Comm communicator);
 

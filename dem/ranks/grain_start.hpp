@@ -1,4 +1,4 @@
-// What a rank takes from the lists of seeds that it begins with.
+// A rank's share of the seeds of a run.
 #pragma once
 
 #include "core/parallel/decomposition.hpp"
@@ -11,9 +11,9 @@
 
 namespace thalweg::dem {
 
-// Of grains and members of clumps, m.
+// Largest radius (m) of grains and members of clumps.
 double largest_radius_of(const std::vector<GrainSeed>& seeds, const std::vector<ClumpSeed>& clumps);
-// Of a member from its clump's centre, m.
+// Largest distance (m) of a member from its clump's centre.
 double largest_offset_of(const std::vector<ClumpSeed>& clumps);
 
 // The clumps whose centre a rank owns, sorted by id.

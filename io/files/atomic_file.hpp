@@ -23,7 +23,7 @@ bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path&
 // Renames a finished file into place. Throws RunError.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Whether a kill has left a file of this name: unfinished (NAME.partial), or made beside it by MPI-IO while it opened
+// True if a kill has left a file of this name: unfinished (NAME.partial), or made beside it by MPI-IO while it opened
 // it (Open MPI's NAME.partial.locktest.0).
 bool is_left_by_a_kill(const std::filesystem::path& path);
 

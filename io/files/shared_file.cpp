@@ -32,7 +32,7 @@ std::vector<std::vector<SharedFile::Piece>> in_parts(const std::vector<SharedFil
   return parts;
 }
 
-// Where pieces lie in the file and in memory. A view of a file needs a type that is not empty, so without pieces it is
+// Layout of pieces in the file and in memory. A view of a file needs a type that is not empty, so without pieces it is
 // MPI_BYTE, of which none is written.
 struct Layout {
   MPI_Datatype in_file = MPI_BYTE, in_memory = MPI_BYTE;

@@ -22,7 +22,7 @@ public:
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
 
-  // What a rank writes: bytes, and where they begin in the file.
+  // Piece that a rank writes: bytes, and their offset in the file.
   struct Piece {
     std::uint64_t offset;
     std::span<const std::byte> bytes;

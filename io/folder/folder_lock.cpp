@@ -43,7 +43,7 @@ std::string name_of_this_host() {
 
 constexpr std::string_view before_host = " on ";
 
-// Who holds the lock, for somebody who finds it taken.
+// Holder of the lock, for a message to those who find it taken.
 std::string name_of_this_process() {
   return fmt::format("process {}{}{}\n", ::getpid(), before_host, name_of_this_host());
 }

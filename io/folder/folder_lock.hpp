@@ -23,8 +23,8 @@ public:
   FolderLock& operator=(FolderLock&& other) noexcept;
   ~FolderLock();
 
-  // Whether a process, be it this one, holds the lock of the folder now; nothing where that cannot be found out: there
-  // is no lock file, it is not this user's, or the file system has no locks.
+  // True if any process, this one included, holds the lock of the folder now; nothing if that cannot be determined:
+  // there is no lock file, it is not this user's, or the file system has no locks.
   static std::optional<bool> is_held(const std::filesystem::path& folder);
 
   static constexpr const char* file_name = ".lock";

@@ -31,7 +31,7 @@ constexpr std::array run_contents{"case.yaml",    "series.csv",  "profiles.h5", 
                                   "fluid.pvd",    "solids.pvd",  "grains",      "fluid",          "solids",
                                   "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",         "run.log",
                                   "summary.json", "analysis",    "stop"};
-// Of these, what a run that goes on changes in its place: folders, and files that are not replaced as a whole.
+// Entries that a continued run changes in place: folders, and files that are not replaced as a whole.
 constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "solids", "fluid_parts",
                               "grain_parts", "run.log",   "probes",    "tracks", "entrainment",
                               "grains.pvd",  "fluid.pvd", "solids.pvd"};
@@ -74,7 +74,7 @@ void RunFolder::check_new(bool overwrite) const {
         fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
   const bool has_something =
       std::any_of(fs::directory_iterator(path_), fs::directory_iterator(), [](const auto& entry) {
-        // Of a run that was killed at once.
+        // Files of a run that was killed at once.
         return entry.path().filename() != unfinished_case && entry.path().filename() != FolderLock::file_name;
       });
   if (!has_something) return;
@@ -179,7 +179,7 @@ std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
 }
 
 void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
-  // Where the run goes on from `step` and has not moved since, the case kept for it is still that of its state.
+  // If the run continues from `step` and has not moved since, the case kept for it is still that of its state.
   const bool anew = named_latest() != checkpoint(step);
   make_latest(step);
   std::vector<fs::path> superfluous;

@@ -57,10 +57,10 @@ public:
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   std::filesystem::path checkpoint(std::int64_t step) const;  // checkpoints/step_<step>.h5
 
-  // After the checkpoint of `step` has been closed: makes it the latest (checkpoints/latest holds its file name) and
-  // removes all but the newest `keep` of those up to `step`, and any after it, which a restart from an earlier time has
-  // made obsolete, with the cases kept for them and, where `step` was computed anew, for an earlier state of it; also
-  // what killed runs have left half written. Throws RunError.
+  // Rotates the checkpoints after that of `step` has been closed: makes it the latest (checkpoints/latest holds its
+  // file name), and removes all but the newest `keep` of those up to `step`, any later ones, which a restart from an
+  // earlier time has made obsolete, the cases kept for them and, if `step` was computed anew, for an earlier state of
+  // it, and half-written files of killed runs. Throws RunError.
   void rotate_checkpoints(std::int64_t step, int keep) const;
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }

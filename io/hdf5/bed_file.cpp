@@ -75,7 +75,7 @@ private:
   RowRange share_;
 };
 
-// Of a few numbers, on every rank.
+// Reads a few numbers on every rank.
 template <typename Number>
 std::vector<Number> read_all(Hdf5Reader& file, const std::string& path, std::int64_t count) {
   return read_column<Number>(file, path, RowRange(count, 1, 0));

@@ -65,7 +65,7 @@ public:
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  // From now on data without a checksum are damaged.
+  // Treats data without a checksum as damaged from now on.
   void require_checksums();
 
   bool has(const std::string& path) const override;  // a dataset or an attribute
@@ -77,7 +77,7 @@ public:
   std::int64_t integer_attribute(const std::string& path) const override;
   std::string text_attribute(const std::string& path) const override;
 
-  // What the file holds, sorted by path: for `thalweg info`.
+  // Contents of the file, sorted by path: for `thalweg info`.
   struct Entry {
     std::string path;
     std::string type;  // "float64", "float32" or "int64"

@@ -1,4 +1,4 @@
-// What io's HDF5 sources share: owned identifiers, the parallel access, silence. Included by their .cpp files only.
+// Shared by io's HDF5 sources: owned identifiers, the parallel access, silence. Included by their .cpp files only.
 #pragma once
 
 #include <hdf5.h>
@@ -53,8 +53,8 @@ Handle lone_access();
 // Rows, columns, ... of a dataset; none if it cannot be asked.
 std::vector<hsize_t> extents_of(hid_t dataset);
 
-// Whether the file has room for as many values as the dataset claims: its dimensions are only numbers, which a damaged
-// file may have at will, and which must not be allocated unseen.
+// True if the file has room for as many values as the dataset claims. Its dimensions are only numbers, which may be
+// anything in a damaged file and must not be allocated unchecked.
 bool has_its_values(hid_t dataset);
 
 }  // namespace thalweg::io

@@ -1,4 +1,4 @@
-// What an observer has recorded so far, such as tracks: a folder of HDF5 files, each written once and never changed.
+// Records of an observer, such as tracks: a folder of HDF5 files, each written once and never changed.
 //
 // A part, part_<step>.h5, holds what was added up to its step and is in no earlier part: the `fixed` numbers, `rows` as
 // arrays whose first dimension is that of time, each event a group with its diagnostics and `time` as attributes (their
@@ -25,7 +25,7 @@ public:
   // nothing yet.
   RecordParts(MPI_Comm communicator, std::filesystem::path folder, std::optional<std::int64_t> continue_from);
 
-  // What has been added and not written is written if that is possible: a run that fails shows how it came about.
+  // Writes what is not yet written, if possible: a run that fails shows how it came about.
   ~RecordParts();
   RecordParts(RecordParts&&) = default;
   RecordParts& operator=(RecordParts&&) = delete;

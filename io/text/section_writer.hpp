@@ -32,7 +32,7 @@ public:
   std::vector<std::string> sections() const;  // names of those at the top
 
 private:
-  // Whether a value that is shown has been chosen for the documentation, because the key has no default.
+  // Source of a shown value: the default, or an example chosen for the documentation because the key has no default.
   enum class Source { default_value, example };
   static Source source_of(bool no_default) { return no_default ? Source::example : Source::default_value; }
   struct Line {
@@ -77,7 +77,7 @@ private:
   void example_item(const Body& body) override;
   bool shows_key_with(const std::string& choice) override;
 
-  // Whether a value is that of the case, not an example of a key that is not given.
+  // True if a value is that of the case, not an example of a key that is not given.
   bool value_shown() const { return given_ && only_with_.empty(); }
   void put(bool given, const std::string& key, const std::string& value, const std::string& comment,
            Source source = Source::default_value);

@@ -119,7 +119,7 @@ public:
   TextReader(std::string name, std::string_view text, MeshOfFacets& into)
       : name_(std::move(name)), words_(text), into_(into) {}
 
-  // From "solid NAME" on; a file may have several.
+  // Reads from "solid NAME" on; a file may have several.
   void read() {
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
       if (is_word(word, "facet"))
@@ -189,7 +189,7 @@ private:
   MeshOfFacets& into_;
 };
 
-// What is neither a whole binary file nor begins as a text file does.
+// Refuses a file that is neither a whole binary file nor begins as a text file.
 [[noreturn]] void refuse(const std::string& name, const std::string& bytes) {
   const bool is_text = bytes.find('\0') == std::string::npos;
   if (is_text || bytes.size() < header_size)

@@ -86,7 +86,7 @@ bool is_control(char c) {
   return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7F;
 }
 
-// What YAML does not allow in a text, and its parser might take for the end of the file.
+// Refuses bytes that YAML does not allow in a text, and that its parser might take for the end of the file.
 void refuse_odd_bytes(std::string_view text, const PlaceOf& location_of) {
   const auto place_at = [&](std::size_t at) {
     YAML::Mark mark;

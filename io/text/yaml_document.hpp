@@ -32,8 +32,8 @@ struct YamlEntry {
 // The text as a tree; name: of its places, "<name>:<line>". Throws InputError as a document does.
 YamlNode parsed_yaml(const std::string& text, const std::string& name);
 
-// What lay_beneath() has done with the values of the other tree: "fluid.collision: bgk" of those it has added, the key
-// paths of those it has not.
+// Outcome of lay_beneath(): "fluid.collision: bgk" for each value of the other tree that was added, and the key paths
+// of those that were not.
 struct LaidBeneath {
   std::vector<std::string> added, left_out;
 };

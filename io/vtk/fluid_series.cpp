@@ -38,7 +38,7 @@ const char* name_of(FluidField field) {
   throw std::logic_error("unknown fluid field");
 }
 
-// Of the values of the cells of a region in a block, x fastest, those of the cells that are shown.
+// Values of the shown cells among those of the cells of a region in a block, x fastest.
 template <typename Number>
 std::vector<Number> shown(const std::vector<Number>& values, int components, const ShownCells& cells,
                           const Block& block) {

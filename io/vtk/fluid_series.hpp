@@ -31,7 +31,7 @@ public:
   // Does nothing for a snapshot without a fluid.
   void write(const Snapshot& snapshot);
 
-  // What has been written outlasts a loss of power once this returns: before a checkpoint that counts on it.
+  // Makes the frames so far outlast a loss of power, before a checkpoint that counts on them.
   void put_on_disk() { index_.put_on_disk(); }
 
 private:

@@ -1,4 +1,4 @@
-// What frames of the grains can contain.
+// Fields of the grains in frames.
 #pragma once
 
 #include "core/keys/named_choice.hpp"
@@ -10,7 +10,7 @@
 
 namespace thalweg::io {
 
-// In the order of the arrays in a frame.
+// Fields in the order of the arrays in a frame.
 enum class GrainField {
   id,
   clump,
@@ -28,18 +28,18 @@ enum class GrainField {
   orientation
 };
 
-// With the name of its array, its unit and its meaning.
+// Fields with the names of their arrays, their units and meanings.
 const std::vector<NamedChoice<GrainField>>& grain_fields();
 
 int components_of(GrainField field);
 
-// What there is to show of grains, beyond what all have.
+// Properties of the grains of a case that decide which fields exist.
 struct GrainFieldFacts {
   bool clumps = false;
   bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
   bool fluid_stress = false;  // and its stress on them is measured
 };
-// Whether grains with these facts have the field.
+// True if grains with these properties have the field.
 bool there_is(GrainField field, const GrainFieldFacts& facts);
 
 // kg/m^3, of grain number n of the view; of a clump's member the density of the clump.

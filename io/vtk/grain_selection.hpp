@@ -34,7 +34,7 @@ class GrainSelection {
 public:
   GrainSelection(GrainSelectionKeys keys, PopulationEnds ends);
 
-  // Whether the grain with this id and centre (m) is shown.
+  // True if the grain with this id and centre (m) is shown.
   bool has(GlobalId id, const Vec3& position) const;
 
   bool takes_all() const { return keys_ == GrainSelectionKeys{}; }

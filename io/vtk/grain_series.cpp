@@ -161,7 +161,7 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& fol
       population_ends_(std::move(population_ends)),
       index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
-// In the order of the arrays.
+// Fields in the order of the arrays.
 std::vector<NamedChoice<GrainField>> GrainSeries::fields_in(const Snapshot& snapshot) const {
   GrainFieldFacts facts;
   facts.clumps = snapshot.grains.clump_count > 0;
@@ -180,7 +180,7 @@ void GrainSeries::write(const Snapshot& snapshot) {
   const bool with_contact_stress = std::any_of(fields.begin(), fields.end(), [](const NamedChoice<GrainField>& field) {
     return field.value == GrainField::contact_stress;
   });
-  // By id, of which some may be missing, and then by their place in the file.
+  // Rows by id, of which some may be missing, then by their place in the file.
   std::vector<Row> selected =
       rows_by_id(communicator_, selected_rows(snapshot, selection_, population_ends_, with_contact_stress),
                  BlockShare(snapshot.grains.global_count, 1, size_of(communicator_)));

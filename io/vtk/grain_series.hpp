@@ -30,7 +30,7 @@ public:
 
   void write(const Snapshot& snapshot);
 
-  // What has been written outlasts a loss of power once this returns: before a checkpoint that counts on it.
+  // Makes the frames so far outlast a loss of power, before a checkpoint that counts on them.
   void put_on_disk() { index_.put_on_disk(); }
 
 private:

@@ -107,7 +107,7 @@ void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double s
     check_in(fmt::format("fluid_parts.{}", n), [&] { check(output.fluid_parts[n], box_size, spacing); });
 }
 
-// Of fields that there are in some cases only.
+// Reason why a field that exists in some cases only is refused.
 static std::string refusal_of(GrainField field) {
   if (field == GrainField::fluid_force)
     return "there is no fluid around the grains; remove the word or set system: resolved";

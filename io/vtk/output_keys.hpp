@@ -1,4 +1,4 @@
-// What a case says about output files: the section `output`.
+// Keys of output files: the section `output`.
 #pragma once
 
 #include "core/keys/section_visitor.hpp"
@@ -58,17 +58,18 @@ struct OutputKeys {
 // of_fluid, of_grains: the case has a fluid, or grains, whose output can be asked for.
 void describe(SectionVisitor& visit, OutputKeys& output, const OnlyIf& of_fluid, const OnlyIf& of_grains);
 
-// Whether every series of the fluid shows cells of a box of this size (m). Throws KeyError, from the section `output`
-// on.
+// Checks that every series of the fluid shows cells of a box of this size (m). Throws KeyError, from the section
+// `output` on.
 void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double spacing);
 
-// What there is to show of the grains of a case, and to choose from.
+// Properties of the grains of a case that output can show and select.
 struct GrainOutputFacts : GrainFieldFacts {
   PopulationEnds population_ends;
   Vec3 box_size = Vec3::Zero();  // m
 };
 
-// Whether every series of the grains can show what it asks for. Throws KeyError, from the section `output` on.
+// Checks that every series of the grains can show the fields it asks for. Throws KeyError, from the section `output`
+// on.
 void check_grain_output(const OutputKeys& output, const GrainOutputFacts& facts);
 
 }  // namespace thalweg::io

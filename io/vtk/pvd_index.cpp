@@ -31,7 +31,7 @@ std::string line_of(const PvdIndex::Entry& entry) {
   return fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, entry.file);
 }
 
-// What stands between quotes behind a mark.
+// Text between quotes behind a mark.
 std::optional<std::string> quoted(std::string_view text, std::string_view mark) {
   const std::size_t start = text.find(mark);
   if (start == std::string_view::npos) return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<std::string> quoted(std::string_view text, std::string_view mark) 
   return std::string(text.substr(from, end - from));
 }
 
-// Those of the entries that are whole.
+// Complete entries.
 std::vector<PvdIndex::Entry> entries_in(std::string_view text) {
   constexpr std::string_view begins = "<DataSet ";
   std::vector<PvdIndex::Entry> entries;

@@ -22,7 +22,7 @@ void for_each_row(const Block& block, const Block& region, Visit visit) {
     }
 }
 
-// As MPI takes them, also their sum, where the last one ends.
+// Counts as MPI takes them; also their sum, where the last one ends.
 std::vector<int> mpi_counts(const std::vector<std::int64_t>& cells) {
   mpi_count(std::accumulate(cells.begin(), cells.end(), std::int64_t{0}));
   return {cells.begin(), cells.end()};
@@ -45,7 +45,8 @@ RegionOrder::RegionOrder(MPI_Comm communicator, std::vector<Block> parts, const 
       sent_(cells_to_ranks()),
       received_(cells_from_ranks()) {}
 
-// Of this rank's part of the region. Its rows lie in the order of the file, so what goes to one rank lies together.
+// Number of cells of this rank's part of the region for each rank. Its rows lie in the order of the file, so the cells
+// for one rank lie together.
 std::vector<int> RegionOrder::cells_to_ranks() const {
   const int ranks = size_of(communicator_);
   std::vector<std::int64_t> cells(static_cast<std::size_t>(ranks), 0);

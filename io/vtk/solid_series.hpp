@@ -25,7 +25,7 @@ public:
   // solids: in m, where they are at this time (s); looked at on the first rank.
   void write(double time, std::int64_t step, const std::vector<TriangleMesh>& solids);
 
-  // As for GrainSeries.
+  // Makes the frames so far outlast a loss of power, as GrainSeries does.
   void put_on_disk() { index_.put_on_disk(); }
 
 private:

@@ -91,7 +91,7 @@ std::uint64_t VtkXmlFile::header_bytes(const Array& array) {
   return sizeof(std::uint64_t) * (3 + array.share.blocks());
 }
 
-// Where this rank writes what; `total` becomes the size of all appended data.
+// Locations of this rank's data; `total` becomes the size of all appended data.
 std::vector<VtkXmlFile::Location> VtkXmlFile::places(std::uint64_t& total) const {
   std::vector<std::uint64_t> here, before, all;
   for (const Array& array : arrays_) here.push_back(array.data.size());
