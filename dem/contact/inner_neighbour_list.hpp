@@ -1,4 +1,4 @@
-// Inner neighbour list: the pairs of a neighbour list are so near that their law may act soon: a list within the list. In a bed at rest
+// Inner neighbour list: the pairs of a neighbour list that are so near that their law may act soon. In a bed at rest
 // nearly all of them do touch, so that a sub-step need not look at the others of the skin.
 //
 // A pair is near if its gap is below the range of the law (contact_law.hpp, or of lubrication.hpp) plus a margin. Two
