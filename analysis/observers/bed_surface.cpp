@@ -1,6 +1,6 @@
 #include "analysis/observers/bed_surface.hpp"
 
-#include "analysis/tools/mean_observer.hpp"
+#include "analysis/observer/mean_observer.hpp"
 #include "core/geometry/hydraulic_radius.hpp"
 #include "core/state/whole_dataset.hpp"
 

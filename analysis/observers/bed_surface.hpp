@@ -13,8 +13,8 @@
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
+#include "analysis/observer/saved_settings.hpp"
 #include "analysis/tools/bed_layers.hpp"
-#include "analysis/tools/saved_settings.hpp"
 #include "analysis/tools/static_pixels.hpp"
 
 #include <mpi.h>

@@ -1,6 +1,6 @@
 #include "analysis/observers/entrainment.hpp"
 
-#include "analysis/tools/mean_observer.hpp"
+#include "analysis/observer/mean_observer.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/ranks.hpp"
 

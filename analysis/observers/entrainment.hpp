@@ -15,11 +15,11 @@
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
+#include "analysis/observer/saved_settings.hpp"
 #include "analysis/observers/entrainment_event.hpp"
 #include "analysis/tools/bed_layers.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/grain_ring.hpp"
-#include "analysis/tools/saved_settings.hpp"
 #include "analysis/tools/watched_here.hpp"
 
 #include <optional>

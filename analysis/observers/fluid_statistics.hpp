@@ -11,8 +11,8 @@
 // the measurements.
 #pragma once
 
+#include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
-#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/wide_sum.hpp"
 
 #include <mpi.h>

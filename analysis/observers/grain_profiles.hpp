@@ -20,8 +20,8 @@
 // means, also after a restart.
 #pragma once
 
+#include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
-#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>

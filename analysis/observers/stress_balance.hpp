@@ -24,9 +24,9 @@
 // In steady state total stress and side wall stress together are the driving stress.
 #pragma once
 
+#include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/tools/cell_layers.hpp"
-#include "analysis/tools/mean_observer.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
 #include <mpi.h>

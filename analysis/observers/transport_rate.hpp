@@ -12,11 +12,11 @@
 // grains with the distribution of their velocities (histogram.hpp) and their hops (hops.hpp).
 #pragma once
 
+#include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/tools/correlated_mean.hpp"
 #include "analysis/tools/histogram.hpp"
 #include "analysis/tools/hops.hpp"
-#include "analysis/tools/mean_observer.hpp"
 #include "analysis/tools/stationarity.hpp"
 
 #include <mpi.h>

@@ -1,4 +1,4 @@
-#include "analysis/tools/mean_observer.hpp"
+#include "analysis/observer/mean_observer.hpp"
 
 namespace thalweg::analysis {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/observer/observer.hpp"
-#include "analysis/tools/saved_settings.hpp"
+#include "analysis/observer/saved_settings.hpp"
 
 #include <mpi.h>
 
