@@ -37,7 +37,7 @@ class Help:
         entries = getattr(self, kind)
         match = PATTERNS[kind].match(line)
         if kind == "options" and match:
-            entries.append([re.split(r", ?", match[1]), (match[2] or "").strip(), match[3] or ""])
+            entries.append([re.split(r", ?", match[1]), (match[2] or "").strip().partition(":value in")[0], match[3] or ""])
         elif match and match[1] != "KIND":
             entries.append([match[1], "", match[2] or ""])
         elif entries and line.startswith(" " * 8):
@@ -108,7 +108,7 @@ def manual_of(found):
 def manual(root, version):
     title, _, summary = root.summary.partition(": ")
     examples, _, codes = root.footer.partition("\n\n")
-    parts = [f'.TH THALWEG 1 "" "{roff(version)}"', ".SH NAME", f"{roff(title.lower())} \\- {roff(summary)}", ".SH SYNOPSIS",
+    parts = [f'.TH THALWEG 1 "" "{roff(version)}"', ".nh", ".ad l", ".SH NAME", f"{roff(title.lower())} \\- {roff(summary)}", ".SH SYNOPSIS",
              "\\fBthalweg\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]", ".SH COMMANDS", *(manual_of(found) for found in root.all() if found.path),
              ".SH EXAMPLES", ".nf", roff(examples), ".fi", ".SH EXIT STATUS", roff(codes.removeprefix("Exit codes: "))]
     return "\n".join(parts) + "\n"
