@@ -6,8 +6,8 @@
 // analysis/observers/, and its keys in observer_list.hpp.
 #pragma once
 
+#include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
-#include "analysis/tools/mean_observer.hpp"
 #include "core/state/whole_dataset.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
