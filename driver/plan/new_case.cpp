@@ -112,13 +112,12 @@ double packed_height(const Experiment& experiment, const Draft& draft, double me
 std::string yaml_of(const Experiment& experiment, const Draft& draft) {
   const Grains grains = grains_of(experiment);
   const double span = draft.until - draft.from;
-  std::string text = fmt::format(
-      "# {} on a bed of grains of {:.3g} m, written by thalweg new. All values in SI units; `thalweg defaults`\n"
-      "# explains every key, `thalweg check` says what follows from them.\n",
-      experiment.shields_number ? fmt::format("Shields number {:g}", *experiment.shields_number)
-                                : fmt::format("A slope of {:g}", *experiment.slope),
-      grains.median);
-  text += "system: resolved\n";
+  const std::string flow = experiment.shields_number ? fmt::format("Shields number {:g}", *experiment.shields_number)
+                                                     : fmt::format("slope {:g}", *experiment.slope);
+  std::string text =
+      "# Written by thalweg new. All values in SI units; `thalweg defaults` explains every key, and `thalweg check`\n"
+      "# says what follows from them.\n";
+  text += fmt::format("system: resolved\nname: Grains of {:.3g} m, {}\n", grains.median, flow);
   text += fmt::format(
       "domain:\n  size: [{:.9g}, {:.9g}]   # m: streamwise and across; the height follows from the flow\n"
       "  spacing: {:.9g}   # m: {:.3g} cells across the smallest grain\n"

@@ -141,7 +141,7 @@ class Run:
 
     @property
     def name(self):
-        return self.case.get("name", self.folder.name)
+        return self.case.get("name") or self.folder.name
 
     @property
     def size(self):
