@@ -92,7 +92,7 @@ class Counts(ProgramTest):
                 result = self.check_briefly(*big, f"grains.0.count={count}", f"grains.0.placement.pattern={pattern}")
                 self.assertEqual(result.returncode, 2, result.stderr)
                 self.assertIn("of memory, and this machine has", result.stderr)
-                self.assertIn("too many grains to be placed here", result.stdout)
+                self.assertIn("too many grains to be placed on this machine", result.stdout)
         self.assert_refused("check", "case.yaml", "--set", big[0], "--set", big[1], "--set", "grains.0.count=2000000000", "--set",
                             "grains.0.diameter={sizes: [4.0e-3, 5.0e-3], fractions: [0.5, 0.5]}",
                             words=["grains.0.count = 2000000000", "at most 100000000 grains"])

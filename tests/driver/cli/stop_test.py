@@ -92,7 +92,7 @@ class Stopping(ProgramTest):
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
         log = (self.folder / "run/run.log").read_text()
         self.assertRegex(log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun allows only 10 s to save\)")
-        self.assertIn("SIGCONT, as mpirun sends it before it kills: saving\n", log)
+        self.assertIn("SIGCONT (mpirun sends it before it kills the ranks): saving\n", log)
         self.assert_can_go_on(2)
 
     def test_ctrl_c_of_mpirun_without_patience_loses_nothing_that_is_whole(self):
