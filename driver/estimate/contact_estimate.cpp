@@ -92,8 +92,21 @@ double least_stiffness(const Case& c) {
          std::max(found.under_weight / deep_under_weight, std::pow(found.in_impact / deep_in_impact, 2));
 }
 
+namespace {
+
+// St = (rho_s/rho_f) v d/(9 nu) of the largest grain at the fastest speed there may be.
+double largest_stokes_number(const Case& c) {
+  const double speed = std::max(expected_overlaps(c).speed, flow_estimate(c).speed);
+  double ratio = 0.0;
+  for (const std::size_t p : free_populations(c)) ratio = std::max(ratio, c.grains[p].density / c.fluid.density);
+  return ratio * speed * largest_diameter(c) / (9.0 * c.fluid.kinematic_viscosity);
+}
+
+}  // namespace
+
 std::optional<ReboundTimes> rebound_times(const Case& c) {
-  if (!has_fluid(c) || c.grains.empty()) return std::nullopt;
+  if (!has_fluid(c) || c.grains.empty() || largest_stokes_number(c) < least_stokes_number_of_a_rebound)
+    return std::nullopt;
   double smallest = std::numeric_limits<double>::infinity();
   for (const std::size_t p : free_populations(c)) smallest = std::min(smallest, c.grains[p].smallest_diameter());
   return ReboundTimes{shortest_contact(c) / fluid_time_step(c),

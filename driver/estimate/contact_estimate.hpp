@@ -25,9 +25,12 @@ inline constexpr double stiffness_margin = 1.02;
 // have none of their own are smaller, by this margin; 0 where nothing presses.
 double least_stiffness(const Case& c);
 
+// 1: below this Stokes number the fluid stops every grain that touches another (Joseph et al. 2001).
+inline constexpr double least_stokes_number_of_a_rebound = 10.0;
+
 // Duration of the shortest contact, and of sound around the smallest free grain, in fluid steps. A shorter contact
 // reverses the grain without its added mass, and the grain loses momentum to that water
-// (benchmarks/validation/rebound_in_water). None without grains in a fluid.
+// (benchmarks/validation/rebound_in_water). None without grains in a fluid, or where none of them can rebound.
 struct ReboundTimes {
   double contact, around;
 };

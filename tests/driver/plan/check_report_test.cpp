@@ -140,6 +140,9 @@ TEST(CheckReport, AsksForContactsAsLongAsSoundGoesAroundAGrain) {
   EXPECT_NE(line(), "");
   c.contact.normal_stiffness = 0.99 * longest;
   EXPECT_EQ(line(), "");
+  c.contact.normal_stiffness = 1.01 * longest;
+  c.fluid.kinematic_viscosity = 1e-3;  // nothing rebounds: St = 2.55 x 0.9 m/s x 5 mm/(9 nu) = 1.3
+  EXPECT_EQ(line(), "");
 }
 
 // e = exp(-pi zeta/sqrt(1 - zeta^2)), zeta = gamma/(2 sqrt(k m*)), of two grains m* = m/2, at a wall m* = m.
