@@ -25,8 +25,8 @@ public:
   // Fills the columns that follow from the owned grains and clumps alone. Called before find_neighbours(), and before
   // ghosts are made, which get copies.
   virtual void fill_columns(GrainStore&, const Clumps&) {}
-  // Slots and neighbours have changed: what depends on them must be found anew. skin: m, of the neighbour list; no grain
-  // moves further than half of it before the next call.
+  // Slots and neighbours have changed: what depends on them must be found anew. skin: m, of the neighbour list; no
+  // grain moves further than half of it before the next call.
   virtual void find_neighbours(const GrainStore& store, double skin, const Clumps& clumps) = 0;
   // After the contacts: sets the loads of owned grains and clumps, in the store and, with the body forces (N) added, in
   // `grains` and `clumps`.
