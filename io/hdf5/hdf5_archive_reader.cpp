@@ -76,8 +76,8 @@ struct Hdf5Reader::File {
     const std::vector<hsize_t> extents = extents_of(found);
     if (extents.empty()) throw error(name, "the file holds a single value, and rows of values are needed");
     if (!has_its_values(found))
-      throw damaged(name, fmt::format("the file announces {} values and holds fewer",
-                                      shown({extents.begin(), extents.end()})));
+      throw damaged(
+          name, fmt::format("the file announces {} values and holds fewer", shown({extents.begin(), extents.end()})));
     return {extents.begin(), extents.end()};
   }
 
