@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Completion for bash and zsh and the manual page, made from the program's own help: help_files.py THALWEG FOLDER
+"""Completion for bash and zsh, the manual page and the schema of cases, made from what the program prints: help_files.py THALWEG FOLDER
 
 Writes thalweg.bash, _thalweg and thalweg.1 into the folder.
 """
@@ -119,7 +119,9 @@ def main():
     root = Help(program, [])
     version = subprocess.run([program, "--version"], capture_output=True, check=True, encoding="utf-8").stdout.strip()
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in (("thalweg.bash", bash_completion(root)), ("_thalweg", zsh_completion(root)), ("thalweg.1", manual(root, version))):
+    schema = subprocess.run([program, "defaults", "--schema"], capture_output=True, check=True, encoding="utf-8").stdout
+    for name, text in (("thalweg.bash", bash_completion(root)), ("_thalweg", zsh_completion(root)), ("thalweg.1", manual(root, version)),
+                       ("thalweg.schema.json", schema)):
         (folder / name).write_text(text, encoding="utf-8")
 
 

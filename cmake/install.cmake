@@ -21,11 +21,12 @@ set(thalweg_help_folder ${PROJECT_BINARY_DIR}/help)
 install(CODE "execute_process(COMMAND \"${THALWEG_PYTHON}\" -B \"${PROJECT_SOURCE_DIR}/cmake/help_files.py\" \"$<TARGET_FILE:thalweg>\"
                         \"${thalweg_help_folder}\" RESULT_VARIABLE failed ERROR_VARIABLE said)
 if(failed)
-  message(WARNING \"No completion for shells and no manual page: \${said}\")
+  message(WARNING \"No completion for shells, no manual page and no schema of cases: \${said}\")
 endif()")
 install(FILES ${thalweg_help_folder}/thalweg.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
 install(FILES ${thalweg_help_folder}/thalweg.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME thalweg
         OPTIONAL)
+install(FILES ${thalweg_help_folder}/thalweg.schema.json DESTINATION ${thalweg_data_folder} OPTIONAL)
 install(FILES ${thalweg_help_folder}/_thalweg DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
 
 # io needs VTK, HDF5 and yaml-cpp, which not every program has to have.

@@ -109,11 +109,8 @@ void check(const Command& command) {
     std::fputs(joined(solution_report(c, command.path)).c_str(), stdout);
     return;
   }
-  if (command.json) {
-    std::fputs(about_case(command.path, [&] { return check_json(c, measure_bandwidth()); }).c_str(), stdout);
-    return;
-  }
-  std::fputs(joined(check_of(command, c)).c_str(), stdout);
+  const auto json = [&] { return about_case(command.path, [&] { return check_json(c, measure_bandwidth()); }); };
+  std::fputs((command.json ? json() : joined(check_of(command, c))).c_str(), stdout);
   std::fflush(stdout);
   about_case(command.path, [&] { refuse_without_memory(c); });
 }
@@ -149,6 +146,7 @@ std::string answer(const Command& command) {
     case Command::Kind::stop:
       return joined({ask_to_stop(command.path)});
     default:
+      if (command.schema) return case_schema();
       return defaults_yaml(command.system.empty() ? "resolved" : command.system);
   }
 }

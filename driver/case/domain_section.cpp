@@ -104,7 +104,8 @@ void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid)
            "the depth",
        .required = true,
        .above = 0.0,
-       .example = 0.1});
+       .example = 0.1,
+       .fewest_numbers = 2});
   visit.real("spacing", domain.spacing,
              {.unit = "m",
               .meaning = "side of a cell, which divides every length; without a fluid it is only the grid by which the "

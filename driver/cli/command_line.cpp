@@ -105,6 +105,7 @@ void add_others(CLI::App& app, Command& command) {
   defaults->add_option("SYSTEM.SECTION", command.system,
                        "resolved (default), fluid, grains, model_fluid or continuum; a section, e.g. contact; or both, "
                        "e.g. grains.contact; or a preset, zhang2022");
+  defaults->add_flag("--schema", command.schema, "Print the JSON schema of a case instead, for editors");
   defaults->final_callback([&] { command.kind = Command::Kind::defaults; });
   CLI::App* info = app.add_subcommand("info", "Show the contents of a run folder or a checkpoint");
   info->add_option("PATH", command.runs, "Run folder or checkpoint file; with --csv any number of run folders")

@@ -28,6 +28,7 @@ struct Command {
   Network network;         // the same: between them
   bool csv = false;        // of info
   bool json = false;       // of check and info
+  bool schema = false;     // of defaults
   bool solve = false;      // of check
   Experiment experiment;   // of create
   std::string line;        // the command as given

@@ -10,6 +10,7 @@
 #include "driver/input/case_checks.hpp"
 #include "driver/input/derived_flow.hpp"
 #include "io/text/section_reader.hpp"
+#include "io/text/section_schema.hpp"
 #include "io/text/section_writer.hpp"
 #include "io/text/yaml_document.hpp"
 
@@ -184,6 +185,31 @@ std::string defaults_yaml(const std::string& what) {
       "grains.contact, or a preset ({}); the sections of resolved are {}.",
       what, fmt::join(names, ", "), preset_names(),
       fmt::join(documentation_of(SystemKind::resolved).sections(), ", ")));
+}
+
+std::string case_schema() {
+  std::vector<std::string> names;
+  std::vector<io::JsonObject> by_system;
+  for (const NamedSystem& system : choices_of(SystemKind{})) {
+    names.push_back(system.name);
+    io::SectionSchema schema;
+    Case example = example_case(system.value);
+    describe(schema, example);
+    const io::JsonObject is_it = io::JsonObject().set("const", system.name);
+    by_system.push_back(io::JsonObject()
+                            .set("if", io::JsonObject().set("properties", io::JsonObject().set("system", is_it)))
+                            .set("then", schema.schema()));
+  }
+  const io::JsonObject system = io::JsonObject().set("enum", names).set("description", "what is simulated");
+  return io::JsonObject()
+             .set("$schema", "http://json-schema.org/draft-07/schema#")
+             .set("title", "A case of Thalweg")
+             .set("type", "object")
+             .set("properties", io::JsonObject().set("system", system))
+             .set("required", std::vector<std::string>{"system"})
+             .set("allOf", by_system)
+             .text() +
+         "\n";
 }
 
 }  // namespace thalweg::driver

@@ -41,4 +41,7 @@ auto about_case(const std::filesystem::path& path, Work&& work) {
 // InputError where there is no such thing.
 std::string defaults_yaml(const std::string& what = "resolved");
 
+// JSON schema (draft 7) of a case of any system, for editors.
+std::string case_schema();
+
 }  // namespace thalweg::driver

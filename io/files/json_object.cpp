@@ -70,6 +70,15 @@ JsonObject& JsonObject::set(const std::string& name, const std::vector<std::stri
   return put(name, list, list);
 }
 
+JsonObject& JsonObject::set(const std::string& name, const std::vector<JsonObject>& values) {
+  std::vector<std::string> lines, texts;
+  for (const JsonObject& value : values) {
+    lines.push_back(value.line());
+    texts.push_back(value.text());
+  }
+  return put(name, fmt::format("[{}]", fmt::join(lines, ", ")), fmt::format("[{}]", fmt::join(texts, ", ")));
+}
+
 std::string JsonObject::line() const {
   std::vector<std::string> parts;
   for (const Entry& entry : entries_) parts.push_back(json_text(entry.name) + ": " + entry.line);

@@ -22,6 +22,7 @@ public:
   JsonObject& set(const std::string& name, const JsonObject& value);
   JsonObject& set(const std::string& name, const std::vector<double>& values);
   JsonObject& set(const std::string& name, const std::vector<std::string>& values);
+  JsonObject& set(const std::string& name, const std::vector<JsonObject>& values);
 
   std::string line() const;                             // on one line
   std::string text() const;                             // indented, one entry a line

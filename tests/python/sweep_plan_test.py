@@ -310,8 +310,8 @@ class Machine(unittest.TestCase):
         self.assertEqual(self.runs_at_a_time(8, 5e9, 2, 10e9)[0], 1)
 
     def test_memory_by_what_check_prints(self):
-        self.assertEqual(machine.memory_needed("steps 7\nmemory     about 120 MB on one rank\n"), 120e6)
-        self.assertEqual(machine.memory_needed("memory     about 1.5 TB on one rank: more than the 24 GB of this machine"), 1.5e12)
+        self.assertEqual(machine.memory_needed('{"figures": {"memory": 1.2e8}}'), 120e6)
+        self.assertEqual(machine.memory_needed('{"figures": {}}'), 0.0)
         self.assertEqual(machine.memory_needed("thalweg: no memory about"), 0.0)
 
     def test_without_the_program_jobs_must_be_given(self):
@@ -332,19 +332,17 @@ class Slurm(Folder):
 
 
 class Units(unittest.TestCase):
-    def test_units_of_keys_from_the_list_of_all_keys(self):
-        units = tables.units_of_keys("# Every key.\n"
-                                     "gravity:                  # given by magnitude and slope\n"
-                                     "  magnitude: 9.8          # example, m/s^2, at least 0; with slope\n"
-                                     "  # vector: [0, 0, 0]     # m/s^2; in place of both\n"
-                                     "grains:                   # populations\n"
-                                     "  - count: 200            # example, whole number, at least 1; of grains\n"
-                                     "    placement:            # where\n"
-                                     "      seed: 1             # whole number, at least 0; of the packing\n"
-                                     "    diameter:             # the same for all\n"
-                                     "      value: 5e-3         # example, required, m, above 0; of every grain\n"
-                                     "    # contact:            # material\n"
-                                     "      # damping: 1        # kg/(s m^1/2), at least 0; of the dashpot\n")
+    def test_units_of_keys_from_the_schema(self):
+        length = {"type": "number", "unit": "m"}
+        case = {"properties": {
+            "gravity": {"anyOf": [{"properties": {"magnitude": {"unit": "m/s^2"}, "vector": {"type": "array", "unit": "m/s^2"}}}]},
+            "grains": {"items": {"properties": {
+                "count": {"type": "integer"},
+                "diameter": {"anyOf": [{"properties": {"value": length}}, {"type": "null"}, length]},
+                "contact": {"anyOf": [{"properties": {"damping": {"unit": "kg/(s m^1/2)"}}}]}}}}}}
+        other = {"if": {"properties": {"system": {"const": "fluid"}}}, "then": {"properties": {"name": {"unit": "s"}}}}
+        schema = {"allOf": [other, {"if": {"properties": {"system": {"const": "resolved"}}}, "then": case}]}
+        units = tables.units_of_keys(schema, "resolved")
         self.assertEqual(units, {"gravity.magnitude": "m/s^2", "gravity.vector": "m/s^2", "grains.diameter.value": "m",
                                  "grains.diameter": "m", "grains.contact.damping": "kg/(s m^1/2)"})
         self.assertEqual(tables.headed("grains.0.diameter", units), "grains.0.diameter [m]")

@@ -1,5 +1,6 @@
 """The command `thalweg sweep`."""
 import functools
+import json
 import os
 import shlex
 import shutil
@@ -44,8 +45,8 @@ def program():
 def units_of(plan):
     """Of the keys of the case."""
     system = str(read_case(plan.case).get("system", "resolved"))
-    said = asked([program(), "defaults", system])
-    units = units_of_keys(said.stdout) if said.returncode == 0 else {}
+    said = asked([program(), "defaults", "--schema"])
+    units = units_of_keys(json.loads(said.stdout), system) if said.returncode == 0 else {}
     return those_without_dimension(units) if plan.in_grain_units else units
 
 

@@ -1,11 +1,9 @@
 """How many runs fit on this machine at a time. What there is comes from the program that has started this one, which knows the
 scheduler's set of cores and the limits of container and job (driver/cli/python_command.cpp)."""
+import json
 import os
-import re
 
 from thalweg.sweep.inputs import SweepError
-
-BYTES = {"MB": 1e6, "GB": 1e9, "TB": 1e12}
 
 
 def told(name):
@@ -21,9 +19,11 @@ def cores():
 
 
 def memory_needed(report):
-    """By what `thalweg check` has printed, bytes; 0 if it does not say."""
-    found = re.search(r"^memory +about ([0-9.e+]+) (MB|GB|TB) on one rank", report, re.MULTILINE)
-    return float(found[1]) * BYTES[found[2]] if found else 0.0
+    """By what `thalweg check --json` has printed, bytes; 0 if it does not say."""
+    try:
+        return float(json.loads(report)["figures"]["memory"])
+    except (ValueError, KeyError, TypeError):
+        return 0.0
 
 
 def runs_at_a_time(ranks, needed):

@@ -142,7 +142,7 @@ class SweepRun:
 
 
 def check_command(program, case, settings):
-    return [program, "check", str(case)] + set_options(settings)
+    return [program, "check", "--json", str(case)] + set_options(settings)
 
 
 def set_options(settings):

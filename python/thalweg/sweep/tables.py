@@ -7,7 +7,6 @@ from thalweg.sweep.plan import figure_of
 from thalweg.sweep.runs import DONE, WAITING, replace_text
 from thalweg.sweep.tasks import result_columns
 
-UNITS = {"m", "kg", "s", "N", "Pa", "Hz", "rad", "cells", "step", "diameters", "radii"}   # that `thalweg defaults` has
 
 
 def write_tables(plan, tasks, units, folder):
@@ -79,21 +78,23 @@ def without_numbers(key):
     return re.sub(r"\.\d+(?=\.|$)", "", key)
 
 
-def units_of_keys(defaults):
-    """Units by key, without the numbers of list entries, from the text of `thalweg defaults`."""
-    units, path = {}, []
-    for line in defaults.splitlines():
-        match = re.match(r"^( *)(?:# )?(- )?([a-z_0-9]+):( +[^# ].*?)?(?:  +# (.*))?$", line)
-        if not match:
-            continue
-        depth = len(match[1]) // 2 + (1 if match[2] else 0)
-        path = path[:depth] + [""] * (depth - len(path)) + [match[3]]
-        unit = re.match(r"(?:example, )?(?:required, )?(1|[A-Za-z]+(?:/\([A-Za-z^0-9 /]+\)|/[A-Za-z^0-9]+|\^\d)?)[,;]", match[5] or "")
-        if match[4] and unit and set(re.findall("[A-Za-z]+", unit[1])) <= UNITS:
-            words = [word for word in path if word]
-            units[".".join(words)] = unit[1]
-            if words[-1] == "value":   # which may be given without this word
-                units[".".join(words[:-1])] = unit[1]
+def units_of_keys(schema, system):
+    """Units by key, without the numbers of list entries, from what `thalweg defaults --schema` prints."""
+    units = {}
+
+    def walk(node, path):
+        if "unit" in node:
+            units[".".join(path)] = node["unit"]
+        for form in node.get("anyOf", []):   # of a section: its keys, or the value in place of it
+            walk(form, path)
+        for key, property_of_it in node.get("properties", {}).items():
+            walk(property_of_it, [*path, key])
+        if isinstance(node.get("items"), dict) and "properties" in node["items"]:
+            walk(node["items"], path)
+
+    for one in schema["allOf"]:
+        if one["if"]["properties"]["system"]["const"] == system:
+            walk(one["then"], [])
     return units
 
 

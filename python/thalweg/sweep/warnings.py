@@ -1,4 +1,5 @@
 """The warnings of many runs, each said once with the names of the runs that have it."""
+import json
 import re
 import shutil
 import textwrap
@@ -34,7 +35,7 @@ def lines_of(warnings):
 
 
 def said_by_checks(names, checks):
-    """Pairs as grouped() takes them. names: of the runs; checks: functions that return a finished process of `thalweg check`, called
+    """Pairs as grouped() takes them. names: of the runs; checks: functions that return a finished process of `thalweg check --json`, called
     beside each other. A case that cannot be run counts as a warning."""
     with ThreadPoolExecutor(max_workers=cores()) as pool:
         return list(zip(names, pool.map(lambda check: sentences_of(check()), checks)))
@@ -43,18 +44,4 @@ def said_by_checks(names, checks):
 def sentences_of(check):
     if check.returncode != 0:
         return ["it cannot be run: " + check.stderr.strip().removeprefix("thalweg: ")]
-    return warnings_in(check.stdout)
-
-
-def warnings_in(text):
-    """Of what `thalweg check` prints: a warning goes on in the lines that are indented."""
-    found, inside = [], False
-    for line in text.splitlines():
-        if line.startswith("warning "):
-            found.append(line.removeprefix("warning").strip())
-            inside = True
-        elif inside and line.startswith(" "):
-            found[-1] += " " + line.strip()
-        else:
-            inside = False
-    return found
+    return json.loads(check.stdout)["warnings"]
