@@ -250,7 +250,7 @@ std::string SectionWriter::folded(std::string text) {
     std::size_t blank = text.rfind(' ', last_column);
     if (blank <= begin) blank = std::min(text.find(' ', last_column), text.size());
     result += text.substr(0, blank) + "\n";
-    text = margin + text.substr(std::min(blank + 1, text.size()));
+    text.replace(0, std::min(blank + 1, text.size()), margin);
     begin = margin.size();
   }
   return text == margin ? result : result + text + "\n";
