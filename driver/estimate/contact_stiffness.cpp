@@ -86,14 +86,13 @@ double contact_duration(const Case& c) {
   return shortest;
 }
 
-void complete_contacts(Case& c) {
+void take_over_contacts(Case& c) {
   const dem::StiffnessKeys& given = c.contact.given;
   c.filled_in.stiffness = !given.normal;
   c.filled_in.tangential_stiffness = !given.tangential;
   c.filled_in.grain_steps = c.coupling.grain_steps_per_fluid_step == coupling::CouplingKeys::as_many_as_needed;
   if (given.normal) c.contact.normal_stiffness = *given.normal;
   if (given.tangential) c.contact.tangential_stiffness = *given.tangential;
-  fill_in_contacts(c);
 }
 
 void fill_in_contacts(Case& c) {

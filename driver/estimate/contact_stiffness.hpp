@@ -27,8 +27,8 @@ bool goes_by_duration(const Case& c);
 // with its dashpot: the duration that gives its stiffness.
 double contact_duration(const Case& c);
 
-// Notes which stiffnesses the case omits, and derives them. Needs the populations of a case that check_box() accepts.
-void complete_contacts(Case& c);
+// Takes over the stiffnesses that a case gives and notes what it omits, for fill_in_contacts() to derive.
+void take_over_contacts(Case& c);
 
 // Derives the omitted stiffnesses again, after a change of other keys.
 void fill_in_contacts(Case& c);

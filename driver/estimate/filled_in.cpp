@@ -31,7 +31,7 @@ void fill_in_profile(Case& c) {
   if (open.bed_height) profile.bed_height = settled_height(c);
   if (open.shear_velocity) profile.shear_velocity = flow.friction_velocity;
   if (open.roughness)
-    profile.roughness = c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * profile.shear_velocity.value_or(1.0))
+    profile.roughness = c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * *profile.shear_velocity)
                                          : largest_diameter(c) / roughness_a_diameter;
 }
 
@@ -72,11 +72,9 @@ void complete(Case& c) {
     c.filled_in.time_step = !c.fluid.time_step;
     if (const auto& profile = c.initial.fluid.log_profile)
       c.filled_in.profile = {!profile->bed_height, !profile->shear_velocity, !profile->roughness};
-    fill_in_profile(c);
-    if (c.filled_in.time_step) c.fluid.time_step = suitable_time_step(c);
   }
-  if (has_grains(c.system)) complete_contacts(c);
-  if (has_fluid(c)) fill_in_step(c);
+  if (has_grains(c.system)) take_over_contacts(c);
+  fill_in(c);
 }
 
 void fill_in(Case& c) {

@@ -259,7 +259,8 @@ LightestGrains lightest_taken_grains(const Case& c, const dem::GrainParameters& 
   return lightest;
 }
 
-// Refuses what dem would refuse at the start of the run.
+}  // namespace
+
 void refuse_impossible_grains(const Case& c) {
   if (c.grains.empty()) return;
   const PeriodicBox box{c.domain.size, periodic_axes(c.domain)};
@@ -272,9 +273,10 @@ void refuse_impossible_grains(const Case& c) {
   dem::check_lubrication(parameters, lightest, 0.5 * largest_diameter(c), box);
 }
 
-}  // namespace
+namespace {
 
-std::vector<std::string> check_report(const Case& c, double bandwidth) {
+// The report of a case with these warnings.
+Lines report_with(const Case& c, const Lines& found, double bandwidth) {
   if (c.system == SystemKind::continuum) return column_report(c);
   check_initial_sources(c);  // a restart may do without them, so reading a case does not ask
   refuse_impossible_grains(c);
@@ -288,14 +290,21 @@ std::vector<std::string> check_report(const Case& c, double bandwidth) {
   append(bed_lines(c), lines);
   add_model_fluid(c, lines);
   add_cost(c, bandwidth, lines);
-  const std::vector<std::string> found = warnings(c);
   for (const std::string& warning : found) lines.push_back("warning    " + warning);
   lines.push_back("verdict    " + verdict_text(c, found.size()));
   return lines;
 }
 
+Lines warnings_of(const Case& c) { return c.system == SystemKind::continuum ? Lines{} : warnings(c); }
+
+}  // namespace
+
+std::vector<std::string> check_report(const Case& c, double bandwidth) {
+  return report_with(c, warnings_of(c), bandwidth);
+}
+
 std::string check_json(const Case& c, double bandwidth) {
-  const std::vector<std::string> lines = check_report(c, bandwidth);
+  const Lines found = warnings_of(c), lines = report_with(c, found, bandwidth);
   io::JsonObject figures, units, all;
   const auto add = [&](const char* name, const char* unit, double value) {
     figures.set(name, value);
@@ -326,7 +335,6 @@ std::string check_json(const Case& c, double bandwidth) {
     add("galileo_number", "1", numbers.galileo);
   }
   all.set("name", c.name).set("system", name_of(c.system)).set("figures", figures).set("units", units);
-  const std::vector<std::string> found = c.system == SystemKind::continuum ? Lines{} : warnings(c);
   return all.set("report", lines).set("warnings", found).text() + "\n";
 }
 

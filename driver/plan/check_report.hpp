@@ -8,6 +8,10 @@
 
 namespace thalweg::driver {
 
+// Throws InputError where the grains do not fit or their step is too long for the contacts: what dem would refuse at
+// the start of the run.
+void refuse_impossible_grains(const Case& c);
+
 // The whole report, one text a line. bandwidth: of one core's memory, bytes/s. Throws InputError where the case cannot
 // be run (grains that do not fit, a grain step too long for the contacts).
 std::vector<std::string> check_report(const Case& c, double bandwidth);

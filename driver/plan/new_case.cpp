@@ -51,17 +51,16 @@ constexpr double efficiency = 0.7;                         // of several cores
 constexpr int most_rounds = 30;
 
 struct Grains {
-  double smallest, median, largest;  // m
+  double smallest, median;  // m
 };
 
 Grains grains_of(const Experiment& experiment) {
-  if (experiment.diameter) return {*experiment.diameter, *experiment.diameter, *experiment.diameter};
+  if (experiment.diameter) return {*experiment.diameter, *experiment.diameter};
   const std::vector<SievePoint>& sieve = experiment.sieve;
   std::size_t n = 1;
   while (n + 1 < sieve.size() && sieve[n].finer < 0.5) ++n;
   const double share = (0.5 - sieve[n - 1].finer) / (sieve[n].finer - sieve[n - 1].finer);
-  return {sieve.front().size, sieve[n - 1].size * std::pow(sieve[n].size / sieve[n - 1].size, share),
-          sieve.back().size};
+  return {sieve.front().size, sieve[n - 1].size * std::pow(sieve[n].size / sieve[n - 1].size, share)};
 }
 
 // The numbers of a case that are solved for.
@@ -75,7 +74,7 @@ struct Draft {
 
 double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
 
-// The spacing with four digits, and the least whole number of cells of at least this length.
+// m, the least whole number of cells of at least this length.
 double whole(double length, double spacing) { return std::ceil(length / spacing * (1.0 - 1e-9)) * spacing; }
 
 std::string flow_text(const Experiment& experiment) {
@@ -233,7 +232,7 @@ void refuse_missing(const Experiment& e) {
 }
 
 // The draft as a case of the file, once its grains fit and no warning is left that a number mends.
-Case without_warnings(const Experiment& experiment, const std::filesystem::path& path, Draft& draft, double bandwidth) {
+Case without_warnings(const Experiment& experiment, const std::filesystem::path& path, Draft& draft) {
   constexpr double looser = 1.1, loosest = 2.0;
   for (int round = 0; round < most_rounds; ++round) {
     io::write_text_atomically(path, yaml_of(experiment, draft));
@@ -244,7 +243,7 @@ Case without_warnings(const Experiment& experiment, const std::filesystem::path&
       continue;
     }
     try {
-      check_report(c, bandwidth);
+      refuse_impossible_grains(c);
       return c;
     } catch (const InputError&) {  // they do not fit
       draft.looseness *= looser;
@@ -259,14 +258,14 @@ Case solved(const Experiment& experiment, const std::filesystem::path& path, dou
   draft.until = 1e3 * grain_time(experiment);  // longer than the flow takes to develop
   io::write_text_atomically(path, yaml_of(experiment, draft));
   plan_time(read_case(path), experiment, draft);
-  Case c = without_warnings(experiment, path, draft, bandwidth);
+  Case c = without_warnings(experiment, path, draft);
   while (experiment.hours && seconds_on(c, experiment.cores, bandwidth) > 3600.0 * *experiment.hours) {
     if (!shrink(experiment, draft))
       throw InputError(fmt::format(
           "even in the smallest box the run takes about {}, more than --hours {:g}: give more hours or cores, {}.",
           loop::clock_text(seconds_on(c, experiment.cores, bandwidth)), *experiment.hours,
           experiment.accuracy == Accuracy::look ? "or less water" : "or a lower --accuracy"));
-    c = without_warnings(experiment, path, draft, bandwidth);
+    c = without_warnings(experiment, path, draft);
   }
   return c;
 }
