@@ -2,6 +2,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/reproducible_sum.hpp"
 #include "dem/contact/contact_forces.hpp"
+#include "dem/contact/wall_touches.hpp"
 #include "dem/distributed_argmax.hpp"
 #include "dem/grain_dynamics.hpp"
 
@@ -42,23 +43,15 @@ std::vector<Contact> GrainDynamics::contacts() const {
     touching.push_back({store_.id[c.first], store_.id[c.second], overlap, separation.normalized(),
                         kept(list_.pair_rows.history_of(number))});
   });
-  for (std::size_t number = 0; number < list_.walls.size(); ++number) {
-    const WallContact& c = list_.walls[number];
-    const WallView wall = planes_[c.wall].seen_from(store_.position[c.grain], box_);
-    const double overlap = store_.radius[c.grain] - wall.distance;
+  const auto add = [&](const WallTouch& touch, const ContactRows& rows) {
+    const double overlap = store_.radius[touch.slot] - touch.view.distance;
     if (overlap > 0.0)
-      touching.push_back({store_.id[c.grain], -1 - static_cast<GlobalId>(c.wall), overlap, wall.normal,
-                          kept(list_.wall_rows.history_of(number))});
-  }
-  SolidTouches touches(box_, solids_, parameters_.solids);
-  SolidTouches::for_each_grain(list_.solids, [&](std::size_t first, std::size_t last) {
-    const std::uint32_t slot = list_.solids[first].grain;
-    for (const SolidTouch& touch :
-         touches_of(touches, list_, first, last, store_.position[slot], store_.radius[slot], 0.0))
-      touching.push_back({store_.id[slot], -1 - static_cast<GlobalId>(planes_.size() + list_.solids[touch.near].solid),
-                          store_.radius[slot] - touch.view.distance, touch.view.normal,
-                          kept(list_.solid_rows.history_of(row_of(touch)))});
-  });
+      touching.push_back(
+          {store_.id[touch.slot], touch.partner(), overlap, touch.view.normal, kept(rows.history_of(touch.row))});
+  };
+  for_each_wall_touch(store_, list_, surroundings(), [&](const WallTouch& touch) { add(touch, list_.wall_rows); });
+  for_each_solid_touch(store_, list_, surroundings(), 0.0,
+                       [&](const WallTouch& touch) { add(touch, list_.solid_rows); });
   return touching;
 }
 

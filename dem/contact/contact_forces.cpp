@@ -2,6 +2,7 @@
 
 #include "dem/contact/contact_kernel.hpp"
 #include "dem/contact/contact_motion.hpp"
+#include "dem/contact/wall_touches.hpp"
 #include "dem/laws/contact_laws.hpp"
 
 #include <Eigen/Geometry>
@@ -15,22 +16,6 @@ namespace thalweg::dem {
 
 namespace {
 
-// Finds the near pairs; the others are beyond the range of the law (m) and have no history.
-void look_for_near_pairs(const PackedGrainState& grains, NeighbourList& list, double range_of_law,
-                         const MinimumImage& image) {
-  list.near.begin();
-  const double range = range_of_law + list.near.margin();
-  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
-    const PairContact& c = list.pairs[p];
-    const Double4 d = image(grains[c.first].position - grains[c.second].position), square = d * d;
-    const double squared = square[0] + square[1] + square[2], limit = c.reach + range;
-    if (squared < limit * limit)
-      list.near.add({c.first, c.second, static_cast<std::uint32_t>(p)});
-    else
-      list.pair_rows.forget(p);
-  }
-}
-
 template <bool fetch, typename Batch>
 void evaluate_near_pairs(const std::vector<NearPair>& near, Batch& batch) {
   const std::span<const NearPair> all(near);
@@ -43,7 +28,10 @@ void evaluate_near_pairs(const std::vector<NearPair>& near, Batch& batch) {
 template <typename ContactLaw>
 void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const PeriodicBox& box,
                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
-  if (list.near.stale()) look_for_near_pairs(grains, list, law.range(), MinimumImage(box));
+  // Pairs beyond the range of the law have no history.
+  if (list.near.stale())
+    look_for_near_pairs(grains, list.pairs, law.range(), box, list.near,
+                        [&](std::size_t pair) { list.pair_rows.forget(pair); });
   ContactKernel<ContactLaw> batch(law, grains, list.pair_rows.data(), box, materials, material);
   // Data that do not stay in the cache from one sub-step to the next are prefetched.
   constexpr std::size_t cached = 2 << 20;  // bytes
@@ -67,71 +55,41 @@ ContactLoad averaged_load(const ContactLaw& law, const ContactMotion& motion, co
   return law(motion, coefficients, constants, history);
 }
 
-// Adds the load of a wall or a solid to a grain.
-template <bool rolls>
-void add_wall_load(const ContactLoad& f, const WallView& view, PackedGrain& grain) {
+// Adds the load of a wall or a solid to a grain, and advances the history in the rows of contacts of its kind.
+template <typename ContactLaw>
+void evaluate(const ContactLaw& law, const ContactMotion& motion, const WallTouch& touch, PackedGrain& grain,
+              ContactRows& rows, const MaterialTable::Entry& entry) {
+  typename ContactLaw::History history;
+  const ContactLoad f = averaged_load(law, motion, entry, touch.friction, rows[touch.row], history);
+  std::copy(history.begin(), history.end(), rows[touch.row]);
   const Vec3 tangential(f.tx, f.ty, f.tz);
-  grain.force += double4(f.normal * view.normal + tangential);
-  grain.torque += double4(view.distance * tangential.cross(view.normal));
-  if constexpr (rolls) grain.torque += Double4{f.mx, f.my, f.mz, 0.0};
+  grain.force += double4(f.normal * touch.view.normal + tangential);
+  grain.torque += double4(touch.view.distance * tangential.cross(touch.view.normal));
+  if constexpr (ContactLaw::rolls) grain.torque += Double4{f.mx, f.my, f.mz, 0.0};
 }
 
 template <typename ContactLaw>
-[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, PackedGrainState& grains,
-                                     std::vector<WallContact>& contacts, ContactRows& rows, const PeriodicBox& box,
-                                     std::span<const Plane> walls, const MaterialTable& materials,
+[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list,
+                                     const Surroundings& around, const MaterialTable& materials,
                                      std::span<const std::uint8_t> material) {
-  for (std::size_t number = 0; number < contacts.size(); ++number) {
-    const WallContact& c = contacts[number];
-    PackedGrain& grain = grains[c.grain];
-    const Plane& wall = walls[c.wall];
-    const WallView view = wall.seen_from(vector_of(grain.position), box);
-    const ContactMotion motion = motion_of(body_of(grain), view, wall.velocity);
-    if (!(motion.overlap > -law.range())) {
-      rows.forget(number);
-      continue;
-    }
-    typename ContactLaw::History history;
-    const ContactLoad f =
-        averaged_load(law, motion, materials.wall(material[c.grain]), wall.friction, rows[number], history);
-    std::copy(history.begin(), history.end(), rows[number]);
-    add_wall_load<ContactLaw::rolls>(f, view, grain);
-  }
-}
-
-ContactMotion motion_of(const ContactBody& grain, const SolidTouch& touch) {
-  ContactMotion motion = motion_of(grain, touch.view, touch.velocity);
-  motion.effective_radius = touch.effective_radius;
-  return motion;
-}
-
-double friction_of(const SolidTouch& touch, const NeighbourList& list, const Surroundings& around) {
-  return around.solids[list.solids[touch.near].solid].friction;
+  for_each_wall_touch(grains, list, around, [&](const WallTouch& touch) {
+    const ContactMotion motion = motion_of(body_of(grains, touch.slot), touch);
+    if (motion.overlap > -law.range())
+      evaluate(law, motion, touch, grains[touch.slot], list.wall_rows, materials.wall(material[touch.slot]));
+    else
+      list.wall_rows.forget(touch.row);
+  });
 }
 
 template <typename ContactLaw>
 void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                      const MaterialTable& materials, std::span<const std::uint8_t> material) {
-  SolidTouches touches(around.box, around.placed, around.solids);
-  SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
-    const std::uint32_t slot = list.solids[first].grain;
-    PackedGrain& grain = grains[slot];
-    const auto found =
-        touches_of(touches, list, first, last, vector_of(grain.position), grain.position[3], law.range());
-    for (std::size_t near = first; near < last; ++near)
-      for (std::size_t row = 0; row < touches_per_solid; ++row)
-        if (!touches.taken(first, near, row)) list.solid_rows.forget(near * touches_per_solid + row);
-    for (const SolidTouch& touch : found) {
-      const std::size_t number = row_of(touch);
-      if (!touch.goes_on) list.solid_rows.forget(number);
-      const ContactMotion motion = motion_of(body_of(grain), touch);
-      typename ContactLaw::History history;
-      const ContactLoad f = averaged_load(law, motion, materials.wall(material[slot]), friction_of(touch, list, around),
-                                          list.solid_rows[number], history);
-      std::copy(history.begin(), history.end(), list.solid_rows[number]);
-      add_wall_load<ContactLaw::rolls>(f, touch.view, grain);
-    }
-  });
+  const auto visit = [&](const WallTouch& touch) {
+    if (!touch.goes_on) list.solid_rows.forget(touch.row);
+    evaluate(law, motion_of(body_of(grains, touch.slot), touch), touch, grains[touch.slot], list.solid_rows,
+             materials.wall(material[touch.slot]));
+  };
+  for_each_solid_touch(grains, list, around, law.range(), visit, [&](std::size_t row) { list.solid_rows.forget(row); });
 }
 
 // Force on the first body for observers, with the history unchanged; none if the bodies neither touch nor act across
@@ -145,47 +103,6 @@ std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion,
   const Vec3 force = f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
   if (!(motion.overlap > 0.0) && force.isZero(0.0)) return std::nullopt;
   return force;
-}
-
-// Calls visit(contact number, motion, force on the grain) for every wall contact of the list that acts.
-template <typename Visitor>
-void visit_walls(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
-                 const MaterialTable& materials, Visitor&& visit) {
-  with_law(list.wall_rows.law(), 0.0, [&](const auto& law) {
-    for (std::size_t number = 0; number < list.walls.size(); ++number) {
-      const WallContact& c = list.walls[number];
-      const Plane& wall = around.walls[c.wall];
-      const ContactMotion motion =
-          motion_of(body_of(store, c.grain), wall.seen_from(store.position[c.grain], around.box), wall.velocity);
-      if (const std::optional<Vec3> force =
-              force_of(law, motion, materials.wall(store.material[c.grain]), wall.friction, list.wall_rows[number]))
-        visit(number, motion, *force);
-    }
-  });
-}
-
-// Calls visit(touch, motion, force on the grain) for every touch with a solid that acts.
-template <typename Visitor>
-void visit_solids(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
-                  const MaterialTable& materials, Visitor&& visit) {
-  if (list.solids.empty()) return;
-  SolidTouches touches(around.box, around.placed, around.solids);
-  with_surface_law(list.solid_rows.law(), 0.0, [&](const auto& law) {
-    SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
-      const std::uint32_t slot = list.solids[first].grain;
-      const auto found = touches_of(touches, list, first, last, store.position[slot], store.radius[slot], law.range());
-      for (const SolidTouch& touch : found) {
-        const ContactMotion motion = motion_of(body_of(store, slot), touch);
-        using ContactLaw = std::decay_t<decltype(law)>;
-        std::array<double, ContactRows::width_of<ContactLaw>> row;
-        std::copy_n(list.solid_rows[row_of(touch)], row.size(), row.begin());
-        if (!touch.goes_on) std::fill_n(row.begin(), std::tuple_size_v<typename ContactLaw::History>, 0.0);
-        if (const std::optional<Vec3> force = force_of(law, motion, materials.wall(store.material[slot]),
-                                                       friction_of(touch, list, around), row.data()))
-          visit(touch, motion, *force);
-      }
-    });
-  });
 }
 
 // Calls visit(contact number, motion, separation, force on the first) for every acting pair with a wanted grain.
@@ -211,9 +128,8 @@ void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surr
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
            [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });
-  with_law(list.wall_rows.law(), time_step, [&](const auto& law) {
-    evaluate_walls(law, grains, list.walls, list.wall_rows, around.box, around.walls, materials, material);
-  });
+  with_law(list.wall_rows.law(), time_step,
+           [&](const auto& law) { evaluate_walls(law, grains, list, around, materials, material); });
   if (list.solids.empty()) return;
   with_surface_law(list.solid_rows.law(), time_step,
                    [&](const auto& law) { evaluate_solids(law, grains, list, around, materials, material); });
@@ -240,19 +156,26 @@ void for_each_contact_end(const GrainStore& store, const NeighbourList& list, co
 
 void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                            const MaterialTable& materials, const ContactEndVisitor& visit) {
-  const auto visit_end = [&](std::size_t slot, std::size_t partner, const ContactMotion& motion, const Vec3& force) {
-    if (store.is_ghost(slot)) return;
-    const Vec3 arm = (motion.overlap - store.radius[slot]) * normal_of(motion);
-    visit(slot, {arm, force, -1 - static_cast<GlobalId>(partner), arm});
+  const auto visit_acting = [&](const auto& law, const ContactRows& rows, const WallTouch& touch) {
+    using ContactLaw = std::decay_t<decltype(law)>;
+    std::array<double, ContactRows::width_of<ContactLaw>> row;
+    std::copy_n(rows[touch.row], row.size(), row.begin());
+    if (!touch.goes_on) std::fill_n(row.begin(), std::tuple_size_v<typename ContactLaw::History>, 0.0);
+    const ContactMotion motion = motion_of(body_of(store, touch.slot), touch);
+    const std::optional<Vec3> force =
+        force_of(law, motion, materials.wall(store.material[touch.slot]), touch.friction, row.data());
+    if (!force || store.is_ghost(touch.slot)) return;
+    const Vec3 arm = (motion.overlap - store.radius[touch.slot]) * normal_of(motion);
+    visit(touch.slot, {arm, *force, touch.partner(), arm});
   };
-  visit_walls(store, list, around, materials, [&](std::size_t number, const ContactMotion& motion, const Vec3& force) {
-    visit_end(list.walls[number].grain, list.walls[number].wall, motion, force);
+  with_law(list.wall_rows.law(), 0.0, [&](const auto& law) {
+    for_each_wall_touch(store, list, around, [&](const WallTouch& t) { visit_acting(law, list.wall_rows, t); });
   });
-  visit_solids(store, list, around, materials,
-               [&](const SolidTouch& touch, const ContactMotion& motion, const Vec3& force) {
-                 const NearSolid& near = list.solids[touch.near];
-                 visit_end(near.grain, around.walls.size() + near.solid, motion, force);
-               });
+  if (list.solids.empty()) return;
+  with_surface_law(list.solid_rows.law(), 0.0, [&](const auto& law) {
+    for_each_solid_touch(store, list, around, law.range(),
+                         [&](const WallTouch& t) { visit_acting(law, list.solid_rows, t); });
+  });
 }
 
 }  // namespace thalweg::dem

@@ -20,8 +20,13 @@ struct ContactBody {
   double radius;  // m
 };
 
-inline ContactBody body_of(const PackedGrain& grain) {
-  return {vector_of(grain.velocity), vector_of(grain.spin), grain.position[3]};
+// Grains of a sub-step and those of the store, read in the same way.
+inline Vec3 position_of(const PackedGrainState& grains, std::size_t slot) { return vector_of(grains[slot].position); }
+inline Vec3 position_of(const GrainStore& store, std::size_t slot) { return store.position[slot]; }
+inline double radius_of(const PackedGrainState& grains, std::size_t slot) { return grains[slot].position[3]; }
+inline double radius_of(const GrainStore& store, std::size_t slot) { return store.radius[slot]; }
+inline ContactBody body_of(const PackedGrainState& grains, std::size_t slot) {
+  return {vector_of(grains[slot].velocity), vector_of(grains[slot].spin), grains[slot].position[3]};
 }
 inline ContactBody body_of(const GrainStore& store, std::size_t slot) {
   return {store.velocity[slot], store.angular_velocity[slot], store.radius[slot]};

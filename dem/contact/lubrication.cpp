@@ -1,8 +1,9 @@
 #include "dem/contact/lubrication.hpp"
 
 #include "core/base/error.hpp"
+#include "dem/contact/contact_motion.hpp"
+#include "dem/contact/wall_touches.hpp"
 #include "dem/laws/material.hpp"
-#include "dem/motion/minimum_image.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -35,18 +36,6 @@ LubricationLoad averaged_load(const LubricationResistance& resistance, const Vec
           resistance.mixed * normal.cross(sliding) - resistance.rolling * rolling};
 }
 
-// Properties of a grain that the force depends on.
-struct MovingSphere {
-  double radius;
-  Vec3 velocity, spin;
-};
-MovingSphere moving_sphere_of(const PackedGrain& grain) {
-  return {grain.position[3], vector_of(grain.velocity), vector_of(grain.spin)};
-}
-MovingSphere moving_sphere_of(const GrainStore& store, std::size_t slot) {
-  return {store.radius[slot], store.velocity[slot], store.angular_velocity[slot]};
-}
-
 // Between two surfaces that are near: where, and what acts on the first.
 struct NearSurfaces {
   Vec3 normal;                   // from the second to the first
@@ -54,7 +43,7 @@ struct NearSurfaces {
   LubricationLoad load;
 };
 
-std::optional<NearSurfaces> between(const MovingSphere& first, const MovingSphere& second, const Vec3& separation,
+std::optional<NearSurfaces> between(const ContactBody& first, const ContactBody& second, const Vec3& separation,
                                     const LubricationParameters& parameters) {
   const double reach = first.radius + second.radius + parameters.reach(), square = separation.squaredNorm();
   if (square >= reach * reach) return std::nullopt;
@@ -68,43 +57,33 @@ std::optional<NearSurfaces> between(const MovingSphere& first, const MovingSpher
                                     normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
 }
 
-// ratio: the radius of the sphere over that of what it is near; 0 of a plane.
-std::optional<NearSurfaces> between(const MovingSphere& sphere, const WallView& view, const Vec3& wall_velocity,
-                                    double ratio, const LubricationParameters& parameters) {
-  const auto [height, n] = view;
+std::optional<NearSurfaces> between(const ContactBody& sphere, const WallTouch& wall,
+                                    const LubricationParameters& parameters) {
+  const auto [height, n] = wall.view;
   const double gap = height - sphere.radius;
   if (!(gap > 0.0 && gap < parameters.reach())) return std::nullopt;
-  const Vec3 approach = sphere.velocity - wall_velocity;
+  const double ratio = sphere.radius / wall.effective_radius - 1.0;  // of the radii; 0 at a plane
+  const Vec3 approach = sphere.velocity - wall.velocity;
   return NearSurfaces{n, height, 0.0,
                       averaged_load(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
                                     approach - height * sphere.spin.cross(n), sphere.spin)};
 }
 
-void add_to_pair(PackedGrain& first, PackedGrain& second, const Vec3& separation,
-                 const LubricationParameters& parameters) {
-  const auto near = between(moving_sphere_of(first), moving_sphere_of(second), separation, parameters);
-  if (!near) return;
-  const LubricationLoad& load = near->load;
-  const Double4 force = double4(load.force), turn = double4(load.force.cross(near->normal)),
-                couple = double4(load.couple);
+void add_to_pair(PackedGrain& first, PackedGrain& second, const NearSurfaces& near) {
+  const Double4 force = double4(near.load.force), turn = double4(near.load.force.cross(near.normal)),
+                couple = double4(near.load.couple);
   first.force += force;
   second.force -= force;
-  first.torque += near->first_arm * turn + couple;
-  second.torque += near->second_arm * turn - couple;
+  first.torque += near.first_arm * turn + couple;
+  second.torque += near.second_arm * turn - couple;
 }
 
-// Finds the pairs between which the force may act before the list is searched again. reach: m.
-void look_for_near_surfaces(const PackedGrainState& grains, NeighbourList& list, double reach,
-                            const MinimumImage& image) {
-  list.near_surfaces.begin();
-  const double range = reach + list.near_surfaces.margin();
-  for (std::size_t p = 0; p < list.pairs.size(); ++p) {
-    const PairContact& c = list.pairs[p];
-    const Double4 d = image(grains[c.first].position - grains[c.second].position), square = d * d;
-    const double limit = c.reach + range;
-    if (square[0] + square[1] + square[2] < limit * limit)
-      list.near_surfaces.add({c.first, c.second, static_cast<std::uint32_t>(p)});
-  }
+// Calls visit(surfaces) where the two grains of a pair are near each other.
+template <typename Grains, typename Visit>
+void visit_near_grains(const Grains& grains, std::size_t first, std::size_t second, const PeriodicBox& box,
+                       const LubricationParameters& parameters, Visit visit) {
+  const Vec3 separation = box.difference(position_of(grains, first), position_of(grains, second));
+  if (const auto near = between(body_of(grains, first), body_of(grains, second), separation, parameters)) visit(*near);
 }
 
 void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
@@ -112,30 +91,16 @@ void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
   grain.torque += double4(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
 }
 
-// Calls visit(slot, partner, surfaces) for every wall and every place of a solid that is near a grain. sphere_of(slot)
-// and position_of(slot): as the grain is now.
-template <typename SphereOf, typename PositionOf, typename Visit>
-void for_each_near_wall(const NeighbourList& list, const Surroundings& around, const LubricationParameters& parameters,
-                        SphereOf sphere_of, PositionOf position_of, Visit visit) {
-  for (const WallContact& c : list.walls) {
-    if (!parameters.walls[c.wall]) continue;
-    const Plane& wall = around.walls[c.wall];
-    const WallView view = wall.seen_from(position_of(c.grain), around.box);
-    if (const auto near = between(sphere_of(c.grain), view, wall.velocity, 0.0, parameters))
-      visit(c.grain, c.wall, *near);
-  }
-  SolidTouches touches(around.box, around.placed, around.solids);
-  SolidTouches::for_each_grain(list.solids, [&](std::size_t first, std::size_t last) {
-    const std::uint32_t slot = list.solids[first].grain;
-    const MovingSphere sphere = sphere_of(slot);
-    const auto without_history = [](std::size_t, std::size_t) -> Vec3 { return Vec3::Zero(); };
-    for (const SolidTouch& touch :
-         touches.of(list.solids, first, last, position_of(slot), sphere.radius, parameters.reach(), without_history)) {
-      const double ratio = sphere.radius / touch.effective_radius - 1.0;
-      if (const auto near = between(sphere, touch.view, touch.velocity, ratio, parameters))
-        visit(slot, around.walls.size() + list.solids[touch.near].solid, *near);
-    }
-  });
+// Calls visit(touch, surfaces) for every wall and every place of a solid that is near a grain.
+template <typename Grains, typename Visit>
+void for_each_near_wall(const Grains& grains, const NeighbourList& list, const Surroundings& around,
+                        const LubricationParameters& parameters, Visit visit) {
+  const auto visit_near = [&](const WallTouch& touch) {
+    if (touch.wall < around.walls.size() && !parameters.walls[touch.wall]) return;
+    if (const auto near = between(body_of(grains, touch.slot), touch, parameters)) visit(touch, *near);
+  };
+  for_each_wall_touch(grains, list, around, visit_near);
+  for_each_solid_touch(grains, list, around, parameters.reach(), visit_near);
 }
 
 }  // namespace
@@ -191,41 +156,33 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 
 void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
                      const LubricationParameters& parameters) {
-  if (list.near_surfaces.stale()) look_for_near_surfaces(grains, list, parameters.reach(), MinimumImage(around.box));
-  for (const NearPair& c : list.near_surfaces.pairs()) {
-    PackedGrain &first = grains[c.first], &second = grains[c.second];
-    add_to_pair(first, second, around.box.difference(vector_of(first.position), vector_of(second.position)),
-                parameters);
-  }
-  for_each_near_wall(
-      list, around, parameters, [&](std::uint32_t slot) { return moving_sphere_of(grains[slot]); },
-      [&](std::uint32_t slot) { return vector_of(grains[slot].position); },
-      [&](std::uint32_t slot, std::size_t, const NearSurfaces& near) { add_to_grain(grains[slot], near); });
+  if (list.near_surfaces.stale())
+    look_for_near_pairs(grains, list.pairs, parameters.reach(), around.box, list.near_surfaces, [](std::size_t) {});
+  for (const NearPair& c : list.near_surfaces.pairs())
+    visit_near_grains(grains, c.first, c.second, around.box, parameters,
+                      [&](const NearSurfaces& near) { add_to_pair(grains[c.first], grains[c.second], near); });
+  for_each_near_wall(grains, list, around, parameters,
+                     [&](const WallTouch& touch, const NearSurfaces& near) { add_to_grain(grains[touch.slot], near); });
 }
 
 void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit) {
-  for (const PairContact& c : list.pairs) {
-    const auto near = between(moving_sphere_of(store, c.first), moving_sphere_of(store, c.second),
-                              around.box.difference(store.position[c.first], store.position[c.second]), parameters);
-    if (!near) continue;
-    if (!store.is_ghost(c.first)) visit(c.first, -near->first_arm * near->normal, near->load.force);
-    if (!store.is_ghost(c.second)) visit(c.second, near->second_arm * near->normal, -near->load.force);
-  }
+  for (const PairContact& c : list.pairs)
+    visit_near_grains(store, c.first, c.second, around.box, parameters, [&](const NearSurfaces& near) {
+      if (!store.is_ghost(c.first)) visit(c.first, -near.first_arm * near.normal, near.load.force);
+      if (!store.is_ghost(c.second)) visit(c.second, near.second_arm * near.normal, -near.load.force);
+    });
   for_each_wall_lubrication(store, list, around, parameters,
                             [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
 }
 
 void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit) {
-  for_each_near_wall(
-      list, around, parameters, [&](std::uint32_t slot) { return moving_sphere_of(store, slot); },
-      [&](std::uint32_t slot) { return store.position[slot]; },
-      [&](std::uint32_t slot, std::size_t partner, const NearSurfaces& near) {
-        if (store.is_ghost(slot)) return;
-        const Vec3 arm = -near.first_arm * near.normal;
-        visit(slot, {arm, near.load.force, -1 - static_cast<GlobalId>(partner), arm});
-      });
+  for_each_near_wall(store, list, around, parameters, [&](const WallTouch& touch, const NearSurfaces& near) {
+    if (store.is_ghost(touch.slot)) return;
+    const Vec3 arm = -near.first_arm * near.normal;
+    visit(touch.slot, {arm, near.load.force, touch.partner(), arm});
+  });
 }
 
 }  // namespace thalweg::dem

@@ -34,7 +34,7 @@ struct LubricationParameters {
   double normal_cut_off = 0.0;      // m, the gap h_c below which N is not resolved
   double tangential_cut_off = 0.0;  // m, the same of A, E, G
   double minimum_gap = 1e-3;        // radii of the smaller body: gaps count as at least this wide (roughness)
-  std::vector<bool> walls;          // which walls the fluid sticks to, one for each plane
+  std::vector<bool> walls;          // true where the fluid sticks to the wall, one for each plane
 
   double reach() const { return normal_cut_off > tangential_cut_off ? normal_cut_off : tangential_cut_off; }  // m
 };

@@ -11,6 +11,7 @@
 #include "dem/laws/contact_history.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/grain_store.hpp"
+#include "dem/motion/minimum_image.hpp"
 #include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 
@@ -95,6 +96,24 @@ inline std::size_t row_of(const SolidTouch& touch) { return touch.near * touches
 
 // Parts of the histories of all contacts of the list; pairs and walls may have different ones.
 std::vector<HistoryPart> history_parts_of(const NeighbourList& list);
+
+// Searches the pairs again for those that may come within a range (m); calls beyond(pair number) for every other.
+template <typename Beyond>
+void look_for_near_pairs(const PackedGrainState& grains, const std::vector<PairContact>& pairs, double range,
+                         const PeriodicBox& box, InnerNeighbourList& near, Beyond beyond) {
+  near.begin();
+  const MinimumImage image(box);
+  range += near.margin();
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const PairContact& c = pairs[p];
+    const Double4 d = image(grains[c.first].position - grains[c.second].position), square = d * d;
+    const double limit = c.reach + range;
+    if (square[0] + square[1] + square[2] < limit * limit)
+      near.add({c.first, c.second, static_cast<std::uint32_t>(p)});
+    else
+      beyond(p);
+  }
+}
 
 // Surroundings of the grains: everything that they may touch besides each other.
 struct Surroundings {

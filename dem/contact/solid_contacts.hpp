@@ -58,7 +58,7 @@ std::vector<NearSolid> find_near_solids(const GrainStore& store, const PeriodicB
 struct SolidTouch {
   std::size_t near;  // number of its NearSolid
   std::size_t row;   // 0 .. touches_per_solid - 1: which of the histories of the grain and the solid is its
-  bool goes_on;      // whether that history is its own from the last evaluation, or someone else's
+  bool goes_on;      // true if that history is its own from the last evaluation, not that of another touch
   WallView view;
   Vec3 velocity;            // m/s, of the solid there
   double effective_radius;  // m, R1 R2/(R1 + R2)

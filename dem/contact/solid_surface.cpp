@@ -25,7 +25,7 @@ double distance_to_segment(const Vec3& point, const Vec3& begin, const Vec3& alo
   return (from - std::clamp(from.dot(along), 0.0, length) * along).norm();
 }
 
-// To the nearest point of a triangle (or within round-off of its sides).
+// Vector to the nearest point of a triangle (or within round-off of its sides).
 template <typename Triangle>
 double distance_to_triangle(const Vec3& point, const Triangle& t) {
   bool above = true;
@@ -264,7 +264,7 @@ void keep_contacts(std::vector<SurfaceView>& views, double tolerance) {
     const bool repeated =
         std::any_of(views.begin(), views.begin() + static_cast<std::ptrdiff_t>(kept), [&](auto& near) {
           if (!(near.normal.dot(views[n].normal) > alike)) return false;
-          // In the plane of the nearer one: a seam between triangles that do not share corners.
+          // One in the plane of a nearer one is a seam between triangles that do not share corners.
           const double rise = near.distance - views[n].distance * views[n].normal.dot(near.normal);
           return std::abs(rise) < tolerance || share_a_corner(near, views[n], tolerance);
         });

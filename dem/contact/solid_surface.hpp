@@ -58,7 +58,7 @@ public:
   // none.
   double distance_to(const Parts& parts, const Vec3& point) const;
 
-  bool holds(const Vec3& point) const;  // whether it is inside
+  bool holds(const Vec3& point) const;  // true if it is inside
 
 private:
   SolidSurface() = default;
@@ -87,7 +87,7 @@ private:
   void for_each_triangle_in(const Vec3& lower, const Vec3& upper, Visit visit) const;
 
   std::vector<Triangle> triangles_;
-  std::vector<Edge> edges_;  // those that do not run along a hollow
+  std::vector<Edge> edges_;  // edges that do not run along a hollow
   std::vector<Corner> corners_;
   std::vector<std::array<std::int32_t, 3>> edges_of_, corners_of_;  // of each triangle; -1: a hollow edge
   double rounding_ = 0.0;
