@@ -9,19 +9,30 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 namespace thalweg::coupling {
 
 namespace {
 
-// Vectors of 64-bit sums, one after the other, over all ranks.
-std::vector<std::int64_t> over_ranks(MPI_Comm communicator, std::vector<std::int64_t> sums) {
-  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator, sums);
-  std::transform(totals.begin(), totals.end(), sums.begin(), [](const WideSum& total) { return total.narrowed(); });
+// Structs of 64-bit sums, added up over all ranks.
+template <typename Sums>
+std::vector<Sums> over_ranks(MPI_Comm communicator, std::vector<Sums> sums) {
+  static_assert(std::is_trivially_copyable_v<Sums> && sizeof(Sums) % sizeof(std::int64_t) == 0);
+  std::vector<std::int64_t> words(sums.size() * sizeof(Sums) / sizeof(std::int64_t));
+  std::memcpy(words.data(), sums.data(), sizeof(Sums) * sums.size());
+  const std::vector<WideSum> totals = wide_sums_over_ranks(communicator, words);
+  std::transform(totals.begin(), totals.end(), words.begin(), [](const WideSum& total) { return total.narrowed(); });
+  std::memcpy(static_cast<void*>(sums.data()), words.data(), sizeof(Sums) * sums.size());
   return sums;
 }
 
-void append(const FixedVec3& sum, std::vector<std::int64_t>& sums) { sums.insert(sums.end(), {sum.x, sum.y, sum.z}); }
+// Sums over the links of a moving solid from which its debt of mass follows.
+struct MassSums {
+  std::int64_t mass;  // LatticeFixed
+  bodies::LinkSums links;
+};
 
 }  // namespace
 
@@ -55,19 +66,15 @@ void SolidBodies<Real>::move(double time) {
 template <typename Real>
 void SolidBodies<Real>::settle_masses() {
   if (!any_moves()) return;
-  constexpr std::size_t width = 1 + bodies::LinkSums::size;
-  std::vector<std::int64_t> sums;
+  std::vector<MassSums> sums;
   for (const Moving& m : moving_) {
-    const bodies::LinkSums& links = bodies_.link_sums(bodies::slot_of_solid(m.solid));
-    sums.push_back(bodies_.body(bodies::slot_of_solid(m.solid)).mass);
-    sums.insert(sums.end(), links.sums.begin(), links.sums.end());
+    const bodies::BodySlot slot = bodies::slot_of_solid(m.solid);
+    sums.push_back({bodies_.body(slot).mass, bodies_.link_sums(slot)});
   }
   sums = over_ranks(communicator_, std::move(sums));
   for (std::size_t k = 0; k < moving_.size(); ++k) {
     Moving& m = moving_[k];
-    bodies::LinkSums links;
-    std::copy_n(&sums[width * k + 1], links.sums.size(), links.sums.begin());
-    m.returned = m.debt.settle(LatticeFixed::to_double(sums[width * k]), m.returned.mass(links), links);
+    m.returned = m.debt.settle(LatticeFixed::to_double(sums[k].mass), m.returned.mass(sums[k].links), sums[k].links);
   }
 }
 
@@ -79,22 +86,23 @@ double SolidBodies<Real>::mass_owed() const {
 }
 
 template <typename Real>
-std::vector<std::int64_t> SolidBodies<Real>::sums() const {
+std::vector<typename SolidBodies<Real>::LoadSums> SolidBodies<Real>::sums() const {
   if (!loaded_.empty()) return loaded_;
-  std::vector<std::int64_t> sums;
-  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(bodies::slot_of_solid(s)).force, sums);
-  for (int s = 0; s < bodies_.solids(); ++s) append(bodies_.body(bodies::slot_of_solid(s)).torque, sums);
+  std::vector<LoadSums> sums;
+  for (int s = 0; s < bodies_.solids(); ++s) {
+    const bodies::LinkBody& body = bodies_.body(bodies::slot_of_solid(s));
+    sums.push_back({body.force, body.torque});
+  }
   return over_ranks(communicator_, std::move(sums));
 }
 
 template <typename Real>
 typename SolidBodies<Real>::Loads SolidBodies<Real>::loads() const {
-  const std::vector<std::int64_t> all = sums();
-  const std::size_t solids = all.size() / 6;
   Loads loads;
-  for (std::size_t k = 0; k < 2 * solids; ++k)
-    (k < solids ? loads.forces : loads.torques)
-        .push_back(FixedVec3{all[3 * k], all[3 * k + 1], all[3 * k + 2]}.to_vec3());
+  for (const LoadSums& sum : sums()) {
+    loads.forces.push_back(sum.force.to_vec3());
+    loads.torques.push_back(sum.torque.to_vec3());
+  }
   return loads;
 }
 
@@ -114,12 +122,15 @@ std::vector<Diagnostic> SolidBodies<Real>::diagnostics() const {
 
 template <typename Real>
 void SolidBodies<Real>::save(ArchiveWriter& archive) const {
-  const std::vector<std::int64_t> all = sums();
-  const std::span<const std::int64_t> values = all;
-  const std::vector<std::uint64_t> shape{values.size() / 6, 3};
-  write_whole(archive, communicator_, "solids/force", values.first(values.size() / 2), shape);
+  const std::vector<LoadSums> all = sums();
+  const auto write = [&](const char* path, FixedVec3 LoadSums::*part) {
+    std::vector<std::int64_t> values;
+    for (const LoadSums& sum : all) values.insert(values.end(), {(sum.*part).x, (sum.*part).y, (sum.*part).z});
+    write_whole<std::int64_t>(archive, communicator_, path, values, {all.size(), 3});
+  };
+  write("solids/force", &LoadSums::force);
   if (!any_moves()) return;
-  write_whole(archive, communicator_, "solids/torque", values.last(values.size() / 2), shape);
+  write("solids/torque", &LoadSums::torque);
   save_debts(archive);
 }
 
@@ -138,11 +149,15 @@ void SolidBodies<Real>::load(ArchiveReader& archive) {
         fmt::format("The checkpoint does not hold {} solids that move as this case does; keep their "
                     "motions.",
                     moving_.size()));
-  loaded_.assign(6 * solids, 0);
-  const std::span<std::int64_t> values = loaded_;
-  archive.read("solids/force", values.first(3 * solids), {shape, {0, 0}, shape});
+  loaded_.assign(solids, {});
+  const auto read = [&](const char* path, FixedVec3 LoadSums::*part) {
+    std::vector<std::int64_t> values(3 * solids);
+    archive.read(path, std::span<std::int64_t>(values), {shape, {0, 0}, shape});
+    for (std::size_t s = 0; s < solids; ++s) loaded_[s].*part = {values[3 * s], values[3 * s + 1], values[3 * s + 2]};
+  };
+  read("solids/force", &LoadSums::force);
   if (!any_moves()) return;
-  archive.read("solids/torque", values.last(3 * solids), {shape, {0, 0}, shape});
+  read("solids/torque", &LoadSums::torque);
   load_debts(archive);
 }
 

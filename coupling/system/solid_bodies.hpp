@@ -6,6 +6,7 @@
 #include "core/base/archive.hpp"
 #include "core/base/units.hpp"
 #include "core/state/system.hpp"
+#include "core/sums/fixed_point.hpp"
 #include "dem/motion/prescribed_motion.hpp"
 
 #include <mpi.h>
@@ -53,9 +54,14 @@ private:
     bodies::MassReturn returned;
   };
 
+  // Sums of the last step over the links of a solid.
+  struct LoadSums {
+    FixedVec3 force, torque;
+  };
+
   static constexpr std::uint64_t debt_width = 7;  // numbers that a checkpoint keeps of each that moves
 
-  std::vector<std::int64_t> sums() const;  // over all ranks: forces, then torques
+  std::vector<LoadSums> sums() const;  // of every solid, over all ranks
   void save_debts(ArchiveWriter& archive) const;
   void load_debts(ArchiveReader& archive);
 
@@ -63,7 +69,7 @@ private:
   bodies::Bodies<Real>& bodies_;
   Units units_;
   std::vector<Moving> moving_;
-  std::vector<std::int64_t> loaded_;
+  std::vector<LoadSums> loaded_;  // of the checkpoint; empty after the first step
 };
 
 }  // namespace thalweg::coupling
