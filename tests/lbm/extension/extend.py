@@ -4,8 +4,10 @@ The edits are those of somebody who adds one, in the files that CONTRIBUTING.md 
 that is left out. extension_test.cpp compares the results with analytic solutions.
 """
 import pathlib
-import shutil
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import extended_copy
 
 # File of lbm/, its text, the text in place of that.
 COLLISION_OPERATOR = [
@@ -70,18 +72,6 @@ WALL = [
 ]
 
 
-def main(repository: pathlib.Path, copy: pathlib.Path) -> None:
-    texts = {path.relative_to(repository): path.read_text() for path in sorted((repository / "lbm").rglob("*.[hc]pp"))}
-    for name, old, new in COLLISION_OPERATOR + SUBGRID_MODEL + WALL:
-        path = pathlib.Path("lbm") / name
-        if texts[path].count(old) != 1:
-            sys.exit(f"{path} has {texts[path].count(old)} times what an extension begins from:\n{old}")
-        texts[path] = texts[path].replace(old, new)
-    shutil.rmtree(copy / "lbm", ignore_errors=True)
-    for path, text in texts.items():
-        (copy / path).parent.mkdir(parents=True, exist_ok=True)
-        (copy / path).write_text(text)
-
-
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
+    extended_copy.write(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "lbm",
+                        COLLISION_OPERATOR + SUBGRID_MODEL + WALL, {})

@@ -1,5 +1,5 @@
-// What a user adds to the lattice, on a copy of lbm/ that extend.py has extended: a collision operator, a subgrid model
-// and a wall, each against an exact solution.
+// Additions of a user to the lattice, on a copy of lbm/ that extend.py has extended: a collision operator, a subgrid
+// model and a wall, each against an exact solution.
 #include "lbm/fluid/flow_fields.hpp"
 #include "tests/lbm/channel.hpp"
 
