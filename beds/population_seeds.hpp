@@ -21,7 +21,7 @@ namespace thalweg::beds {
 // Collective. Throws InputError, on every rank, where they do not fit.
 dem::GrainSeeds grain_seeds(std::span<const Population> populations, const PackingDomain& ranks);
 
-// Which components of the motion of its grains are held.
+// Components of the motion of its grains that are held.
 dem::Motion motion_of(const Population& population);
 
 // The motions of the populations that move as one body, in their order.

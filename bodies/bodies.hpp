@@ -106,7 +106,7 @@ public:
   void settle();
   void refill();
   void update_links();  // writes no population
-  // Also sweeps the fluid. The time goes to these phases of the timer.
+  // Applies the links and sweeps the fluid. The time goes to these phases of the timer.
   void sweep(PhaseTimer& timer, int sweep_phase, int links_phase);
 
   // Cells and links without a step, as at a start: nothing is refilled. After begin_step(), add() and remap().

@@ -65,7 +65,7 @@ struct GrainParameters {
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
   std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step
   double disk_thickness = 0.0;                       // m, of disks in an x-z plane: I = 1/2 m R^2; 0: spheres
-  bool movable_cuts = false;                         // whether the cuts between ranks follow the grains
+  bool movable_cuts = false;                         // true if the cuts between ranks follow the grains
   double initial_overlap = allowed_initial_overlap;  // diameters, by which seeds may overlap: those of a settled bed do
 };
 
@@ -83,7 +83,7 @@ struct Contact {
   GlobalId first, second;  // the lower id; the higher one, or -1 - w for wall w, -1 - (number of walls + s) for solid s
   double overlap;          // m
   Vec3 normal;             // unit, from second to first
-  std::vector<double> history;  // what its law keeps (contact_law.hpp), at the last evaluation
+  std::vector<double> history;  // kept by its law (contact_law.hpp) at the last evaluation
 };
 
 // Name of the diagnostics of the force of all grains on a solid.
@@ -279,7 +279,7 @@ private:
 
   std::int64_t steps_done_ = 0;             // sub-steps since the start of the run
   std::vector<Plane> planes_;               // the walls where they are now
-  std::optional<std::size_t> rough_floor_;  // which of them, if one is
+  std::optional<std::size_t> rough_floor_;  // the one of them that is rough, if any
   std::vector<PlacedSolid> solids_;
   bool walls_change_, solids_change_;
   Assemblies assemblies_;

@@ -11,7 +11,7 @@ namespace thalweg::dem {
 
 namespace {
 
-// Without a fluid step to respect, the neighbour lists are looked at more often, so that faster grains are welcome.
+// The neighbour lists are checked more often than with a fluid step to respect, so that grains may be faster.
 constexpr int sub_steps_between_list_checks = 10;
 
 GrainParameters dry_parameters(const GrainSystemParameters& dry) {

@@ -28,7 +28,7 @@ struct GrainSystemParameters {
   Vec3 gravity = Vec3::Zero();              // m/s^2
   std::vector<std::string> measured_walls;  // names of all walls, in their order, or none
   std::optional<RestBounds> rest = {};      // counts the grains that are not at rest
-  // In place of a fluid: sets the loads of the grains and has all attached columns (model_fluid.hpp); null: none.
+  // Stands in for a fluid: sets the loads of the grains and has all attached columns (model_fluid.hpp); null: none.
   std::shared_ptr<ForceField> field = {};
   double fluid_density = 0.0;  // kg/m^3, of the buoyancy
 };

@@ -45,7 +45,7 @@ struct LoopRecord {
   bool asked = false;  // stopped by LoopPlan::stop_file
   std::int64_t first_step = 0, last_step = 0;
   double wall_seconds = 0.0;            // in run(), this time
-  double advance_seconds = 0.0;         // of which in System::advance()
+  double advance_seconds = 0.0;         // the part in System::advance()
   std::vector<Diagnostic> diagnostics;  // of the system, at the latest health check
   // Largest value of each diagnostic of the system since largest_from (s, simulated), at the regular health checks and
   // at the end. A diagnostic named smallest_... has its smallest value here, and one that is bad either way the value

@@ -61,7 +61,7 @@ public:
   double below_less_above(std::size_t slot) const { return fraction(slot, 1) - fraction(slot, 2); }
 
 private:
-  // Which of a pair has the sphere.
+  // The one of a pair that has the sphere.
   enum class About { grain, neighbours };
   // A grain's remembered neighbours, and the grain itself as the last of them, copied for loops over all of them.
   struct Near {

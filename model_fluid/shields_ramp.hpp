@@ -21,11 +21,11 @@ class ShieldsRamp {
 public:
   explicit ShieldsRamp(const ShieldsRampParameters& parameters) : parameters_(parameters) {}
 
-  // To be called after every step with the diagnostics of all free grains, the speed in v_0 of the fluid as it is:
-  // raises the Shields number, if it is time, and returns whether it has.
+  // Raises the Shields number, if it is time, and returns true if it has. Call it after every step with the diagnostics
+  // of all free grains, the speed in v_0 of the fluid as it is.
   bool advance(double time, double largest_speed, double largest_acceleration);
 
-  // To be called after every step when watches_share(), with the share of free grains faster than moving_speed().
+  // True if watch() is to be called after every step, with the share of free grains faster than moving_speed().
   bool watches_share() const { return parameters_.mobile_share < 1.0; }
   double moving_speed() const { return parameters_.moving_speed; }
   void watch(double moving_share) { mobile_ = has_risen() && moving_share > parameters_.mobile_share; }

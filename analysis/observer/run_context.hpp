@@ -19,9 +19,9 @@ struct FluidContext {
   double kinematic_viscosity = 0.0;  // m^2/s
   double velocity_unit = 0.0;        // m/s of one cell a step
   bool steered = false;              // its mean velocity is prescribed, so that no slope drives it
-  int side_walls = 0;                // of those across y, how many hold the flow back: 0 to 2
+  int side_walls = 0;                // number of walls across y that hold the flow back: 0 to 2
   bool top_drags = false;            // the face z_high exchanges shear with the flow
-  bool top_moves = false;            // and moves along x
+  bool top_moves = false;            // the top moves along x
 };
 
 // Context of a run with a model fluid (model_fluid/model_fluid.hpp).
@@ -32,7 +32,7 @@ struct ModelFluidContext {
 
 // Grains of a case that belong together, with the ids first ... end - 1.
 struct PopulationContext {
-  std::string name;  // of its columns
+  std::string name;  // the name in its columns
   GlobalId first = 0, end = 0;
   std::function<Vec3(double time)> pivot;  // m, of its torque at a time (s)
   bool held = false;                       // moves as prescribed, or not at all
@@ -57,7 +57,7 @@ struct GrainContext {
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
   Force body_force = {};                                          // in a fluid only, as the next two
   Force submerged_weight = {};
-  Force buoyancy = {};  // that part of it which is in the fluid's load
+  Force buoyancy = {};  // the part of it that the fluid's load contains
 
   GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // of ids
   std::vector<HeldGrains> held() const;

@@ -46,7 +46,7 @@ std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunCon
 
 // The flow over the bed; none for dry grains.
 struct BedFlow {
-  int side_walls = 0;           // that hold the flow back
+  int side_walls = 0;           // those that hold the flow back
   double driving_stress = 0.0;  // Pa/m: rho_f g_x
   double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
   bool measured = false;        // force and stress at the top are those of the moment (FluidSource::drive())
@@ -95,9 +95,9 @@ private:
   double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
-  std::vector<double> sums_;            // of the diagnostics but static_bed_height, and of the bulk's solid fraction
-  std::vector<double> surface_sums_;    // m, of each column
-  std::vector<double> surface_counts_;  // of each column: pictures in which it has a static pixel
+  std::vector<double> sums_;          // sums of the diagnostics but static_bed_height, and of the bulk's solid fraction
+  std::vector<double> surface_sums_;  // m, of each column
+  std::vector<double> surface_counts_;  // number of pictures in which each column has a static pixel
 };
 
 }  // namespace thalweg::analysis

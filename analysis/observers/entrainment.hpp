@@ -55,9 +55,9 @@ struct EntrainmentSettings : EntrainmentKeys {
   double diameter = 0.0;            // m, the depth below the bed height that belongs to its surface
   double moving_speed = 0.0;        // m/s
   std::vector<HeldGrains> held;     // grains that cannot move
-  std::vector<GlobalId> obstacles;  // as BedLayers has them
+  std::vector<GlobalId> obstacles;  // ids, as in BedLayers
   GrainContext::Force weight;       // submerged
-  GrainContext::Force buoyancy;     // as torques_about() has it
+  GrainContext::Force buoyancy;     // as in torques_about()
 };
 
 class Entrainment : public Observer {
@@ -106,7 +106,7 @@ private:
     double radius, mass;
     GrainRecord record;
   };
-  struct Start {  // what all ranks learn of an event
+  struct Start {  // part of an event that all ranks learn
     GlobalId id;
     double radius, mass, share;  // m, kg, 1 (not a number: none)
     std::array<double, 3> rest;  // m
@@ -138,7 +138,7 @@ private:
   std::vector<Memory> memory_;      // of the ids whose home is here
   std::int64_t seen_step_ = -1, chosen_step_ = -1;
   std::int64_t events_ = 0, shares_ = 0;               // over all ranks
-  double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;  // likewise
+  double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;  // the same
   static constexpr std::uint64_t memory_columns = 9, sample_columns = 20, touch_columns = 8;
   std::vector<Event> pending_;  // since take_records(); on rank 0
 };

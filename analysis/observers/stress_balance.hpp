@@ -114,7 +114,7 @@ private:
     std::vector<Mat3> contacts, lubrication;
   };
   struct Difference {
-    double share = 0.0;  // of the bed stress
+    double share = 0.0;  // share of the bed stress
     int layer = 0;
   };
 

@@ -47,7 +47,7 @@ public:
     struct Question {
       GlobalId id;
       std::int64_t place;  // among the ids
-      int rank;            // that asks
+      int rank;            // the one that asks
     };
     struct Reply {
       std::int64_t place;

@@ -1,4 +1,4 @@
-// Which of the grains here an observer watches. The homes of the ids know it (distribution_by_id.hpp), and a rank asks
+// The grains of this rank that an observer watches. The homes of the ids know it (distribution_by_id.hpp), a rank asks
 // them for the grains that have come to it since it last looked, so that no rank knows of more grains than its own.
 #pragma once
 

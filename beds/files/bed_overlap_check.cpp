@@ -11,7 +11,7 @@
 namespace thalweg::beds {
 namespace {
 
-// On its way to the ranks that compare it with its neighbours.
+// A grain on its way to the ranks that compare it with its neighbours.
 struct PlacedRow {
   GlobalId id, clump;
   double radius, position[3];

@@ -116,7 +116,7 @@ private:
   double skin() const { return 0.2 * largest_; }
   double reach() const { return 2.0 * (largest_ + skin()); }
 
-  // To all ranks whose grains may come to touch them.
+  // Sends the obstacles to all ranks whose grains may come to touch them.
   void spread_obstacles() {
     const std::vector<PackedBody> near = Copies(ranks_, obstacles_, reach()).exchanged(obstacles_);
     obstacles_.insert(obstacles_.end(), near.begin(), near.end());
@@ -188,7 +188,7 @@ private:
     return longest;
   }
 
-  // Which bodies of this rank the others have copies of, because they are near their grains.
+  // The bodies of this rank that others have copies of, because they are near grains of those ranks.
   class Copies {
   public:
     Copies() = default;

@@ -37,7 +37,7 @@ struct ContactKeys : dem::ContactParameters {
     attraction = true;
   }
   std::optional<WallMaterialKeys> walls;  // contact of grains with walls, where it differs
-  dem::StiffnessKeys given;               // what the stiffnesses follow from
+  dem::StiffnessKeys given;               // the keys from which the stiffnesses follow
 
   // Whatever the stiffnesses follow from.
   bool operator==(const ContactKeys& other) const {

@@ -19,7 +19,7 @@ struct NormalPiece {
   double below, upto;  // shares of the mass of all pieces at the ends
 };
 
-// Without the first point.
+// Adds a piece without its first point.
 void add(const NormalPiece& piece, GradingCurve& curve) {
   const double first = normal_share_below(piece.z_from), last = normal_share_below(piece.z_to);
   const int points = std::max(1, static_cast<int>(std::ceil((piece.z_to - piece.z_from) / z_step)));

@@ -101,7 +101,7 @@ std::vector<dem::GrainSeed> settled(const Box& box, const Decomposition& decompo
   return seeds;
 }
 
-// As `thalweg run` has it by default, or as published; with a bulk viscosity.
+// Collision as `thalweg run` has it by default, or as published; with a bulk viscosity.
 lbm::CollisionParameters collision_of(const Box& box) {
   const Units units{box.spacing, box.time_step, water};
   lbm::CollisionParameters p;

@@ -96,7 +96,7 @@ Result measure(const Index3& cells, const Box& box, const Collision& collision, 
   const double begin = MPI_Wtime();
   bool on = true;
   while (on) {
-    // From the first rank to leave the first barrier to the last to reach the second: no rank's pause goes unseen.
+    // Times run from the first rank to leave the first barrier to the last to reach the second: every pause counts.
     MPI_Barrier(MPI_COMM_WORLD);
     const double start = MPI_Wtime();
     for (int step = 0; step < 2; ++step) fluid.advance();

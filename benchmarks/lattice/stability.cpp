@@ -133,7 +133,7 @@ bool noise_dies(const Setting& s, bool plates) {
   return noise.end <= noise.start;
 }
 
-// Of the settings with these velocities the fastest before the first that fails, as a text.
+// The fastest of these velocities before the first with which a run fails, as a text.
 template <typename Survives>
 std::string fastest_stable(Setting s, const char* none, Survives survives) {
   double best = 0.0;

@@ -38,7 +38,7 @@ struct PeriodicBox {
     return p;
   }
 
-  // As wrapped(), for a point at any distance.
+  // The same as wrapped(), for a point at any distance.
   Vec3 wrapped_from_afar(Vec3 p) const {
     for (int axis = 0; axis < 3; ++axis)
       if (periodic[axis]) p[axis] -= size[axis] * std::floor(p[axis] / size[axis]);

@@ -38,7 +38,7 @@ bool any_rank(MPI_Comm communicator, bool value);
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, const std::vector<Row>& rows,
                                const std::vector<int>& destination);
-// As above, but frees the rows before those of others arrive.
+// The same, but frees the rows before those of others arrive.
 template <typename Row>
 std::vector<Row> exchange_rows(MPI_Comm communicator, std::vector<Row>&& rows, const std::vector<int>& destination);
 

@@ -42,7 +42,7 @@ struct GrainView {
   std::span<const Vec3> contact_force;     // N, sum over contacts at the end of the step
   std::span<const Vec3> contact_torque;    // N m, about the grain's centre
 
-  // Where there are clumps:
+  // Clumps, where there are any:
   std::int64_t clump_count = 0, member_count = 0;  // over all ranks
   std::span<const GlobalId> clump;                 // id of a member's clump; -1: no member. Empty: there are no clumps
   std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id

@@ -25,7 +25,7 @@ struct FaceKeys {
   // True if it exerts shear on a flow along it.
   bool drags() const { return lbm::traits_of(type).drags; }
   bool has_velocity() const { return lbm::traits_of(type).has_velocity; }
-  bool operator==(const FaceKeys& other) const;  // what the type does not use does not count
+  bool operator==(const FaceKeys& other) const;  // ignores keys that the type does not use
 };
 
 void describe(SectionVisitor& visit, FaceKeys& face);

@@ -41,7 +41,7 @@ public:
   // Lattice units. Of a clump, owed_mass, mean_loss and wanted_return are in its first member's.
   Number& owed_mass() const { return columns_[16]; }         // to the fluid
   Number& mean_loss() const { return columns_[17]; }         // of mass a step
-  Number& returned_density() const { return columns_[18]; }  // what the links return in the coming step:
+  Number& returned_density() const { return columns_[18]; }  // mass that the links return in the coming step:
   Vector returned_slope() const { return vector(19); }       // mass_return.hpp
   Number& surrounding() const { return columns_[22]; }       // rho - rho_rest of the fluid around the grain
   Number& wanted_return() const { return columns_[23]; }     // of mass; the links return the mean of the last two
@@ -49,7 +49,7 @@ public:
     for (Number& value : columns_.subspan(16, 8)) value = 0.0;
   }
 
-  // Only where asked for, Pa: of the last exchange, and the mean of the last two.
+  // Stress, only where asked for, Pa: of the last exchange, and the mean of the last two.
   Tensor last_stress() const { return tensor(24); }
   Tensor mean_stress() const { return tensor(33); }
 

@@ -47,7 +47,7 @@ struct ClumpSeed {
   Vec3 velocity = Vec3::Zero();             // m/s, of the centre of mass
   Vec3 angular_velocity = Vec3::Zero();     // rad/s
   int material = 0;                         // number of its material
-  Motion motion = Motion::free;             // what is held keeps the velocities above
+  Motion motion = Motion::free;             // held components keep the velocities above
 
   double mass() const { return density * shape->volume; }  // kg
   Quaternion principal_orientation() const { return normalised(product(orientation, shape->principal)); }

@@ -59,7 +59,7 @@ private:
   double viscosity_;  // Pa s
 };
 
-// In its place without a liquid.
+// Stands in for it without a liquid.
 struct NoFilm {
   explicit NoFilm(double /*viscosity*/) {}
   Dashpots operator()(const ContactMotion&, double, double, double) const { return {0.0, 0.0}; }

@@ -16,7 +16,7 @@ namespace thalweg::dem {
 // The law of all contacts of a kind.
 struct LawChoice {
   ContactParameters common;       // of any material
-  bool rolling_friction = false;  // whether any of the contacts may have it
+  bool rolling_friction = false;  // true if any of the contacts may have it
   bool at_surface = false;        // with solids, whose law keeps the normal
 };
 

@@ -38,7 +38,7 @@ struct ContactParameters {
   double rolling_friction = 0.0;       // between grains, >= 0; 0: none (rolling_friction.hpp)
   double wall_rolling_friction = 0.0;  // between a grain and a wall, >= 0: the default of the planes
   double rolling_damping = 0.3;        // over the critical one, >= 0; the same for all materials of a run
-  bool attraction = false;             // whether the dashpot may pull at the end of the contact
+  bool attraction = false;             // true if the dashpot may pull at the end of the contact
   double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
   std::optional<LiquidBridgeParameters> liquid_bridge;  // none: dry
   double film_viscosity = 0.0;  // Pa s, of the liquid around all grains (contact_film.hpp); 0: none

@@ -77,7 +77,7 @@ public:
   const Entry& wall(int material) const { return walls_[material]; }
   // Parameters that all materials have in common: law, attraction, tangential and rolling damping, liquid bridges.
   const ContactParameters& common() const { return common_; }
-  bool rolling_friction() const { return rolling_friction_; }  // whether any pair of grains has it
+  bool rolling_friction() const { return rolling_friction_; }  // true if any pair of grains has it
 
 private:
   int count_;

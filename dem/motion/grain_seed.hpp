@@ -20,7 +20,7 @@ struct GrainSeed {
   Vec3 velocity = Vec3::Zero();          // m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s
   int material = 0;                      // number of its material
-  Motion motion = Motion::free;          // what is held keeps the velocities above
+  Motion motion = Motion::free;          // held components keep the velocities above
 
   int assembly = -1;  // number of the rigid assembly it belongs to (assemblies.hpp); -1: none
 

@@ -27,7 +27,7 @@ struct PrescribedMotion {
   Vec3 axis = Vec3::UnitZ();      // a, unit
   double angular_velocity = 0.0;  // w, rad/s
 
-  bool moves() const;  // whether it is not at rest for ever
+  bool moves() const;  // false if it is at rest for ever
   bool turns() const { return angular_velocity != 0.0; }
   Mat3 turn(double time) const;                               // Rot(a, w t)
   Vec3 displacement(double time) const;                       // s, m

@@ -124,7 +124,7 @@ void GhostExchange::follow(std::span<const PairContact> pairs, const GrainStore&
     neighbour.send.push_back(own);
     neighbour.ghosts.push_back(ghost);
   }
-  // In the order of slots, which is that of ids on both sides.
+  // Sorts by slot, which is the order of ids on both sides.
   const auto each_once = [](std::vector<std::uint32_t>& slots) {
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());

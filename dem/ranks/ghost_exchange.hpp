@@ -1,4 +1,4 @@
-// Which of a rank's grains are ghosts elsewhere, and the one packed message per neighbour that keeps them up to date.
+// The grains of a rank that are ghosts elsewhere, and the one packed message per neighbour that updates them.
 // In sub-steps only those that may touch a grain of the other rank are sent.
 #pragma once
 
@@ -64,7 +64,7 @@ private:
   std::vector<Neighbour> neighbours_;  // ranks grains are sent to or received from; ghosts side by side
   std::vector<Neighbour> followed_;    // the same without what refresh(PackedGrainState&) leaves out, where it does
   PackedExchange motion_, followed_motion_, attached_, values_;
-  bool follows_ = false;         // whether follow() has been called for the present ghosts
+  bool follows_ = false;         // true if follow() has been called for the present ghosts
   bool values_ready_ = false;    // values_ fits the present ghosts
   bool attached_ready_ = false;  // attached_ fits them
 };

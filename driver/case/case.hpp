@@ -100,7 +100,7 @@ struct InitialSource {
 
 struct InitialCase {
   InitialFromCase from;
-  std::vector<InitialField> fields{InitialField::fluid};  // what is taken from `from.run`
+  std::vector<InitialField> fields{InitialField::fluid};  // fields taken from `from.run`
   coupling::InitialFluidKeys fluid;
   bool operator==(const InitialCase&) const = default;
 
@@ -162,15 +162,15 @@ struct FilledIn {
   struct {
     bool bed_height = false, shear_velocity = false, roughness = false;
   } profile;           // initial.fluid.log_profile
-  std::string flow;    // what the section flow has set, in words; empty: there is none
-  std::string preset;  // what a preset has set, in words; empty: there is none
+  std::string flow;    // keys that the section flow has set, in words; empty: there is none
+  std::string preset;  // keys that a preset has set, in words; empty: there is none
   bool operator==(const FilledIn&) const { return true; }
 };
 
 struct Case {
   SystemKind system = SystemKind::resolved;
   std::string name;
-  DomainCase domain;          // of a column: what follows from its sections
+  DomainCase domain;          // that of a column follows from its sections
   coupling::FluidKeys fluid;  // meaningless for dry grains, as are coupling and initial
   GravityCase gravity;
   std::optional<FlowCase> flow;  // only while the case is read: it becomes gravity.slope and domain.size
@@ -194,7 +194,7 @@ struct Case {
 
 bool has_fluid(SystemKind system);
 bool has_fluid(const Case& c);                         // system: resolved or fluid
-bool has_grains(SystemKind system);                    // that a case gives one by one
+bool has_grains(SystemKind system);                    // true if a case gives its grains one by one
 continuum::SystemParameters column_of(const Case& c);  // of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
@@ -215,7 +215,7 @@ double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), w
 
 std::int64_t grain_count(const Case& c);           // of all populations
 std::int64_t grain_rows(const Case& c);            // ids that they take: a clump as many as it has members
-bool measures_grain_stress(const Case& c);         // whether the stress of the fluid on every grain is measured
+bool measures_grain_stress(const Case& c);         // true if the stress of the fluid on every grain is measured
 double largest_diameter(const Case& c);            // m; 0 without grains
 double largest_extent(const Case& c);              // m, the same with clumps as they are long
 double smallest_diameter(const Case& c);           // m; 0 without grains

@@ -16,17 +16,17 @@ namespace thalweg::driver {
 // file, where one cannot be read or is not closed. Collective.
 void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ranks);
 
-// From the lowest to the highest coordinates of a solid whose surface has been read, m.
+// The lowest and the highest coordinates of a solid whose surface has been read, m.
 bodies::Extent extent_of(const SolidCase& solid);
 
 // Throws InputError where a solid lies so far from the box, or is so much longer than a periodic box, that it cannot be
 // meant.
 void check_solid_extents(const Case& c, const io::YamlDocument& document);
 
-// In lattice units, at the start, in the order of the case.
+// Shapes in lattice units, at the start, in the order of the case.
 std::vector<bodies::SolidShape> solid_shapes(const Case& c);
 
-// At rest for ever where the case gives none.
+// Motion of a solid; it stands still where the case gives none.
 dem::PrescribedMotion motion_of(const SolidCase& solid);
 
 // The surfaces of all solids at a time (s), in m; spheres as triangles.

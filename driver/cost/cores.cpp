@@ -33,7 +33,7 @@ CoreSet own_cores() {
   return CoreSet(least);
 }
 
-// By the quota as well; as many as the machine has where the system does not tell.
+// Number of cores, limited by the quota as well; all of the machine where the system does not tell.
 int count_of(const CoreSet& set) {
   int cores = 0;
   for (const std::uint64_t word : set) cores += std::popcount(word);

@@ -43,7 +43,7 @@ double bytes_of_grain(const Case& c, int ranks) {
   return grain_bytes + (c.output.grains.every > 0.0 ? frame_row_bytes : checkpoint_row_bytes);
 }
 double bytes_of_placing(const Case& c, int ranks) {
-  // In the case, on every rank: a position, and what a diameter takes while the median of all is found; around a rank's
+  // Bytes in the case, on every rank: a position, and a diameter while the median of all is found; around a rank's
   // block.
   constexpr double position = 24.0, diameter = 50.0, random_sphere = 130.0;
   double bytes = 0.0;

@@ -20,7 +20,7 @@ double bytes_per_value(const Case& c);               // a population of a cell
 double bytes_of_program();                           // a process before it has a system
 double bytes_of_cell(const Case& c);                 // a cell of fluid
 double bytes_of_grain(const Case& c, int ranks);     // a grain on one rank or several
-double bytes_of_placing(const Case& c, int ranks);   // what a rank knows of other grains while they are placed
+double bytes_of_placing(const Case& c, int ranks);   // for what a rank knows of other grains while they are placed
 double bytes_of_bed_rows(const Case& c, int ranks);  // a rank's share of the rows of bed files
 double bytes_of_sizes(const Case& c);                // the different sizes, which every rank has
 double bytes_of_links(const Case& c);                // the links of all grains

@@ -49,7 +49,7 @@ std::vector<double> some_diameters(const Case& c, double stride) {
   return diameters;
 }
 
-// On a cubic lattice from the floor up, as far as there is room.
+// Grains on a cubic lattice from the floor up, as far as there is room.
 std::vector<BedGrain> bed_of(const std::vector<double>& diameters, double density, bool disks, const Vec3& size) {
   const double spacing = between_centres * *std::max_element(diameters.begin(), diameters.end());
   const auto across = [&](int axis) { return std::max(1, static_cast<int>(size[axis] / spacing)); };

@@ -41,7 +41,7 @@ double given_speed(const Case& c) {
   return fastest;
 }
 
-// By mass, of spheres or disks of one density; clumps are alike.
+// Ratio of masses of spheres or disks of one density; clumps are alike.
 double heaviest_over_lightest(const beds::Population& grains) {
   return grains.shape
              ? 1.0

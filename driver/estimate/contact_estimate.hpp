@@ -15,10 +15,10 @@ struct Overlaps {
 };
 Overlaps expected_overlaps(const Case& c);
 
-// From where they are large.
+// Overlaps, in diameters, from which they count as large.
 inline constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
 
-// By how much a stiffness that is to keep overlaps small exceeds the least.
+// Factor by which a stiffness that is to keep overlaps small exceeds the least.
 inline constexpr double stiffness_margin = 1.02;
 
 // N/m: the normal stiffness of the section contact, of the linear law, with which the overlaps of the populations that

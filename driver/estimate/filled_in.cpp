@@ -16,10 +16,10 @@ namespace thalweg::driver {
 
 namespace {
 
-// What plan and case warnings hold against a step: docs/stability.md.
+// Limits beyond which plan and case warnings advise a shorter step: docs/stability.md.
 constexpr double accurate_excess_near_bodies = 0.15, accurate_excess = 0.029;
 
-// As check advises where the start is missing: the log law that a flow over grains of this size comes to.
+// Fills in the start that check advises: the log law that a flow over grains of this size comes to.
 void fill_in_profile(Case& c) {
   if (!c.initial.fluid.log_profile) return;
   coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;

@@ -1,5 +1,5 @@
-// What a case may leave open and what follows from its other keys: the start of the flow, the step of the fluid, the
-// stiffness of contacts and the sub-steps of the grains, in this order.
+// Keys that a case may leave open because they follow from its others: the start of the flow, the step of the fluid,
+// the stiffness of contacts and the sub-steps of the grains, in this order.
 #pragma once
 
 #include "driver/case/case.hpp"

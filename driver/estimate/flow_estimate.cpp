@@ -32,7 +32,7 @@ struct Channel {
 
   // Length in the log law: the reach; the half-width without floor and top; the depth without any wall.
   double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
-  // Without any wall, the profile of a film.
+  // The laminar flow; without any wall, that of a film.
   LaminarChannel laminar(double acceleration) const {
     const bool held = std::isfinite(reach) || std::isfinite(half_width);
     return laminar_channel(acceleration, held ? reach : depth, half_width, viscosity);
@@ -89,7 +89,7 @@ void consider_start(const Case& c, FlowEstimate& flow) {
     consider(flow, *start.log_profile->shear_velocity / karman_constant * std::log(height), FlowCause::initial_fluid);
 }
 
-// In the time of the run a slope adds no more than g_x times that time to the speed of the start.
+// A slope adds no more than g_x times the time of the run to the speed of the start.
 void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& flow) {
   if (c.initial.takes(InitialField::fluid)) return;
   FlowEstimate start;

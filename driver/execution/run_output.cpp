@@ -147,7 +147,7 @@ void RunOutput::add_records() {
   for (ObserverRecords& records : records_) records.parts.add(records.observer->take_records(), system_.step());
 }
 
-// Also of frames and records that the run no longer writes: they are of the course that it has left.
+// Frames and records that the run no longer writes are dropped as well: they belong to the course that it has left.
 void RunOutput::drop_what_is_later() const {
   on_first_rank(communicator_, [&] {
     for (const std::string& name : io::RunFolder::names_of_records())

@@ -66,7 +66,7 @@ private:
   io::SeriesColumns columns_;                               // of the series
   std::unique_ptr<io::SeriesTable> series_;                 // from begin() on, if there is to be one
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
-  std::vector<std::pair<double, io::FluidSeries>> fluid_;   // likewise
+  std::vector<std::pair<double, io::FluidSeries>> fluid_;   // the same for the fluid
   std::optional<io::SolidSeries> solids_;                   // where there are frames of grains or fluid
   struct ObserverRecords {
     analysis::Observer* observer;

@@ -187,7 +187,7 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
 
 enum class Contacts { softer, stiffer };
 
-// By the key that the case gives, or by the duration that it leaves open.
+// The change of the key that the case gives, or of the duration that it leaves open.
 std::string change_of_contacts(const Case& c, Contacts to) {
   const bool softer = to == Contacts::softer;
   if (goes_by_duration(c))

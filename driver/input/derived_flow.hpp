@@ -16,11 +16,11 @@ namespace thalweg::driver {
 
 struct DerivedFlow {
   std::vector<std::string> overrides;  // those given, and the keys that follow; empty: the case has no section flow
-  std::string text;                    // what follows, in words: "gravity.slope: 0.0453 and ..."
+  std::string text;                    // the keys that follow, in words: "gravity.slope: 0.0453 and ..."
 };
 
-// Of a case file and its overrides. Throws InputError, with file and line, where the section asks for more or less than
-// leaves one flow, or for one that does not exist. Collective.
+// Flow of a case file and its overrides. Throws InputError, with file and line, where the section does not determine
+// exactly one flow, or asks for one that does not exist. Collective.
 DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
                          const KnownBeds& known, const Ranks& ranks);
 

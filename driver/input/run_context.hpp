@@ -1,4 +1,4 @@
-// From a case to what its observers, and the frames of its grains, may know of it.
+// The part of a case that its observers, and the frames of its grains, may know.
 #pragma once
 
 #include "analysis/observer/run_context.hpp"

@@ -72,7 +72,7 @@ Change excess_change(const Case& c, double excess, Rounding rounding) {
   return fluid_step_change(fluid_time_step(c) * excess / (relaxation_time(c) - 0.5), 2, rounding);
 }
 
-// From here on both trt and bgk are stable and accurate without a subgrid model.
+// Excess from which both trt and bgk are stable and accurate without a subgrid model.
 constexpr double calm_excess = 0.03;
 
 bool smagorinsky(const Case& c) { return c.fluid.subgrid().model() == lbm::SubgridModel::smagorinsky; }
@@ -283,7 +283,7 @@ Warnings fast_model_fluid(const Case& c) {
          {}}}}};
 }
 
-// With one relaxation time water hardly seeps through a bed: speed over the right one in random beds, by cells across a
+// Seepage with one relaxation time, which hardly flows: speed over the right one in random beds, by cells across a
 // grain, with tau - 1/2 below 0.001 (benchmarks/validation/seepage).
 double seepage_speed(double cells) {
   constexpr double few = 6.25, some = 10.0, many = 16.0;
@@ -318,7 +318,7 @@ Warnings with_fluid(const Case& c) {
   return has_fluid(c) ? rule(c) : Warnings{};
 }
 
-// By weight: case_warnings.hpp.
+// Rules in the order of their weight: case_warnings.hpp.
 std::vector<WarningRule> all_rules() {
   std::vector<WarningRule> rules = unit_rules();
   for (const WarningRule rule :

@@ -26,7 +26,7 @@ namespace thalweg::driver {
 
 namespace {
 
-// What an accuracy asks for. Drag on a grain alone at Re 1000: +98, +41 and +15 % with these cells
+// Requirements of an accuracy. Drag on a grain alone at Re 1000: +98, +41 and +15 % with these cells
 // (benchmarks/validation/sphere_drag_curve). Lengths in diameters, the window in H/u* of turbulent flow.
 struct Standard {
   const char* name;

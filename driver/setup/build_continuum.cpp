@@ -1,4 +1,4 @@
-// From a case to a column of the two-phase continuum.
+// A column of the two-phase continuum, from a case.
 #include "continuum/continuum_system.hpp"
 #include "driver/setup/build_system.hpp"
 

@@ -1,4 +1,4 @@
-// From a case to grains without a fluid, or with a force in its place.
+// Grains without a fluid, or with a force in its place, from a case.
 #include "dem/grain_system.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/setup/build_system.hpp"

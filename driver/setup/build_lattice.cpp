@@ -1,4 +1,4 @@
-// From a case to a lattice fluid with its solids or its grains.
+// A lattice fluid with its solids or its grains, from a case.
 #include "coupling/system/lattice_system.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/solid_setup.hpp"

@@ -1,4 +1,4 @@
-// From a case to the system that runs it.
+// The system that runs a case.
 #pragma once
 
 #include "core/parallel/decomposition.hpp"

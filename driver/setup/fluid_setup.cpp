@@ -1,4 +1,4 @@
-// From a case to the lattice: SI to lattice units, faces to wall rules, gravity along the bed to a body force.
+// The lattice of a case: SI to lattice units, faces to wall rules, gravity along the bed to a body force.
 #include "driver/setup/fluid_setup.hpp"
 
 #include "driver/estimate/grain_weight.hpp"

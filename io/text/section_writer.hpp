@@ -49,7 +49,7 @@ private:
   static std::string text_of(const Line& line);  // without a line end
   static std::string folded(std::string text);   // with line ends
   std::string yaml_of(std::span<const Line> lines) const;
-  Range inside(std::size_t head) const;                         // what is deeper than that line, behind it
+  Range inside(std::size_t head) const;                         // the lines behind it that are deeper
   std::vector<std::size_t> heads_in(const Range& range) const;  // lines with the keys of the first level there
 
   void value_of(const std::string& key, double& value, const RealKey& about) override;

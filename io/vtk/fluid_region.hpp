@@ -1,4 +1,4 @@
-// Which cells of the fluid an output shows: the whole box, a box in it, or a layer of cells, all of them or every n-th.
+// The cells of the fluid that an output shows: the whole box, a box in it, or a layer, all of them or every n-th.
 #pragma once
 
 #include "core/base/types.hpp"
@@ -37,7 +37,7 @@ void check(const FluidRegionKeys& keys, const Vec3& box_size, double spacing);
 
 // The cells shown, in a coarser lattice of which a cell is stride cells wide and has the first of them in its middle.
 struct ShownCells {
-  Block region;         // that they are taken from; in global coordinates
+  Block region;         // from which they are taken; in global coordinates
   Index3 stride;        // cells
   Block coarse;         // of the coarser lattice
   Vec3 origin;          // m, of the coarser lattice

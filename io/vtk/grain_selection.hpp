@@ -1,4 +1,4 @@
-// Which grains an output shows: all, or those with certain ids, of a population, or in a box.
+// The grains that an output shows: all, or those with certain ids, of a population, or in a box.
 #pragma once
 
 #include "core/base/types.hpp"

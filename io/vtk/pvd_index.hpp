@@ -44,7 +44,7 @@ private:
   MPI_Comm communicator_;
   std::filesystem::path path_;
   std::vector<Entry> entries_;
-  std::uint64_t end_of_entries_ = 0;              // where the next one goes, bytes; 0: there is no file yet
+  std::uint64_t end_of_entries_ = 0;              // place of the next one, bytes; 0: there is no file yet
   std::vector<std::filesystem::path> new_files_;  // since put_on_disk()
 };
 

@@ -24,7 +24,7 @@ public:
   VtkXmlFile(MPI_Comm communicator, std::int64_t rows);
   void set_rows(std::int64_t rows);
 
-  // Which rows a rank adds and writes, and the first of this rank.
+  // The rows that a rank adds and writes, and the first of this rank.
   const BlockShare& share() const { return share_; }
   std::int64_t first_row() const { return share_.rows_of(rank_of(communicator_)).first; }
 

@@ -37,7 +37,7 @@ struct FluidSurvey {
   CellExtreme lowest, highest;    // rho - 1
   CellExtreme fastest;            // |u|
   std::int64_t fast_cells = 0;    // with |u| above `fast`
-  std::int64_t broken_cells = 0;  // where there are any, mass and momentum are not a number, and the extremes are
+  std::int64_t broken_cells = 0;  // with any, mass and momentum are not a number, and the extremes are
                                   // infinite, at the first of these cells
 };
 

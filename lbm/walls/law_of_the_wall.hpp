@@ -42,7 +42,7 @@ public:
       for (int n = 0; n < intervals; ++n) add_interval(low * (1.0 + n / double(intervals)), low / intervals);
   }
 
-  // To 3e-8. `reynolds`: at least 0.
+  // Accurate to 3e-8. `reynolds`: at least 0.
   double operator()(double reynolds) const {
     if (reynolds <= edge_of_viscous_sublayer * edge_of_viscous_sublayer) return 1.0;
     const auto bits = std::bit_cast<std::uint64_t>(reynolds);

@@ -1,4 +1,4 @@
-// What it means that a fluid cell is enclosed, in the plainest words.
+// The definition of an enclosed fluid cell, in the plainest words.
 #pragma once
 
 #include "core/base/types.hpp"

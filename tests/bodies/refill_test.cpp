@@ -1,4 +1,4 @@
-// What a cell that a grain has uncovered is filled with, in a fluid whose populations are known.
+// The populations of a cell that a grain has uncovered, in a fluid whose populations are known.
 #include "bodies/refill.hpp"
 
 #include "bodies/links/link_builder.hpp"
@@ -143,7 +143,7 @@ TEST_F(UncoveredCells, HaveTheDensityOfTheirHeightInWaterAtRest) {
   const RefillTotals totals =
       move_sphere(fluid, upright_, MPI_COMM_SELF, rest, Vec3(8.3, 8.5, 7.6), body_at(Vec3(8.1, 8.6, 8.5)));
   ASSERT_GT(totals.cells, 10);
-  // To the rounding of the mean over at most 18 neighbours and of 19 populations.
+  // Exact to the rounding of the mean over at most 18 neighbours and of 19 populations.
   EXPECT_NEAR(LatticeFixed::to_double(totals.mass), 0.0, static_cast<double>(totals.cells) * 0x1p-44);
 }
 

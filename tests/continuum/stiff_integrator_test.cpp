@@ -1,4 +1,4 @@
-// What the integrator says when it gets no further.
+// The message of the integrator when it gets no further.
 #include "continuum/stiff_integrator.hpp"
 #include "core/base/error.hpp"
 

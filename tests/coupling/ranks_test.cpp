@@ -222,8 +222,8 @@ TEST(Ranks, DoNotChangeOneBitWithTheOtherExchangeInAPeriodicBox) {
   compare<double>(box, two_layouts_of(size_of(MPI_COMM_WORLD)), 14);
 }
 
-// Only 2.1 diameters wide both ways: a grain can meet its neighbour through either periodic face, and a cut leaves 1.05
-// a rank.
+// A box only 2.1 diameters wide both ways: a grain can meet its neighbour through either periodic face, and a cut
+// leaves 1.05 a rank.
 TEST(Ranks, DoNotChangeOneBitInABoxOfTwoDiametersPeriodicBothWays) {
   WaterBox box = crowded({13, 13, 48}, {true, true, false}, 28, 5.21e-3);
   box.spacing = 2.1 * 5e-3 / 13.0;

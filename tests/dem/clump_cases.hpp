@@ -1,4 +1,4 @@
-// What the tests of clumps share: shapes, seeds, angular momentum.
+// Shapes, seeds and angular momentum for the tests of clumps.
 #pragma once
 
 #include "core/base/counter_random.hpp"

@@ -1,4 +1,4 @@
-// What the tests of the grains share: the contact parameters of 5 mm glass spheres, boxes, and a step.
+// Contact parameters of 5 mm glass spheres, boxes, and a step for the tests of the grains.
 #pragma once
 
 #include "core/parallel/mpi_session.hpp"

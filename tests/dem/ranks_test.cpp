@@ -298,7 +298,7 @@ void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {
     EXPECT_EQ(grains.largest_overlap(), alone.largest_overlap()) << name;
     EXPECT_EQ(grains.rebuilds(), alone.rebuilds()) << name;
 
-    // What one rank saved half way, loaded on all of them, ends alike.
+    // The state that one rank saved half way, loaded on all of them, ends alike.
     GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, GrainSeeds{});
     thalweg::test::MemoryReader reader(half);
     restarted.load(reader);

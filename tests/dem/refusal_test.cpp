@@ -1,4 +1,4 @@
-// What is refused at the start and what stops a run, on every rank alike.
+// Refusals at the start and errors that stop a run, on every rank alike.
 #include "core/base/error.hpp"
 #include "tests/dem/grain_cases.hpp"
 

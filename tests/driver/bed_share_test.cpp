@@ -36,7 +36,7 @@ contact: {restitution: 0.4}
 run: {until: 1.0e-3}
 )";
 
-// On a cubic lattice from the floor up: spheres of two sizes and, at every third site, a clump of three across 5 mm,
+// Rows on a cubic lattice from the floor up: spheres of two sizes and, at every third site, a clump of three in 5 mm,
 // some of them across a periodic face. The middle of the rows is within a clump.
 std::vector<BedGrain> rows_of_bed() {
   constexpr double spacing = 5e-3;
@@ -108,7 +108,7 @@ protected:
   Case read_whole() const { return read_case(folder_ / "case.yaml"); }
   Case read_together() const { return read_case(folder_ / "case.yaml", {}, {}, MPI_COMM_WORLD); }
 
-  // What either says of a bed that does not fit.
+  // Compares the refusals of a bed that does not fit.
   void expect_the_same_refusal(const std::vector<std::string>& words) {
     std::string whole = "nothing", together = "nothing";
     try {

@@ -128,7 +128,7 @@ TEST(GrainCaseReader, ListedSizesHaveTheirShareOfTheNumber) {
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
 }
 
-// To within the mass of the largest grain; the seed shuffles, and the case as run has the same sizes.
+// Masses agree to within that of the largest grain; the seed shuffles, and the case as run has the same sizes.
 TEST(GrainCaseReader, SizesAreGivenByMass) {
   const std::vector<std::string> all_sizes{
       "grains.0.diameter={sieve: {sizes: [3e-3, 4e-3, 5e-3, 6e-3], finer: [0, 0.16, 0.5, 1]}}",

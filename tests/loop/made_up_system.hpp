@@ -12,7 +12,7 @@
 
 namespace thalweg::loop {
 
-// At step 250 of 0.01 s, in a box of 1 m with cells of 0.1 m and three grains of 0.1 m, dealt out to the ranks; every
+// A system at step 250 of 0.01 s, in a box of 1 m with cells of 0.1 m and three grains of 0.1 m on all ranks; every
 // diagnostic is found in the pore between two of them.
 class MadeUp : public System {
 public:
@@ -56,7 +56,7 @@ private:
   PhaseTimer timer_;
 };
 
-// What a look at these diagnostics throws; empty: nothing.
+// The message that a look at these diagnostics throws; empty: none.
 inline std::string message_of(Watchdog& dog, const std::vector<Diagnostic>& diagnostics) {
   try {
     dog.judge(diagnostics);

@@ -23,7 +23,7 @@ TEST(Progress, LeavesOutWhatIsNotThere) {
   EXPECT_EQ(progress_line(state), "t 0         of 0.5 s    0 %  left ?           1e+05 steps/s");
 }
 
-// What a batch job leaves in run.log: a line a second while somebody may be watching, and few in a run of a week.
+// The lines of a batch job in run.log: one a second while somebody may be watching, and few in a run of a week.
 TEST(Progress, LinesOfALongRunAreFew) {
   EXPECT_EQ(seconds_to_next_line(0.0), 1.0);
   EXPECT_EQ(seconds_to_next_line(1e6), 600.0);

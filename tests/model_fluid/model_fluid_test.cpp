@@ -33,7 +33,7 @@ TEST(Lens, KnownVolumesAndAreas) {
   EXPECT_NEAR(area_above(1.0, 0.0), 0.5 * pi, 1e-15);
 }
 
-// By their definitions: Theta = 2/3 (B_1 v_0 + B_2 v_0^2)/(m g'), Re_* = sqrt(3) m/B_1 sqrt(Theta g'/D). Table I of the
+// Definitions: Theta = 2/3 (B_1 v_0 + B_2 v_0^2)/(m g'), Re_* = sqrt(3) m/B_1 sqrt(Theta g'/D). Table I of the
 // paper has Re_p = 30 Re_* at large Re_*, which is B_2 = m/(2 D).
 TEST(ModelFluid, CoefficientsGiveBackTheirNumbers) {
   const GrainScales s{2e-3, 3e-5, 6.0};
@@ -139,7 +139,7 @@ void lift_above_floor(Packing& packing) {
   packing.moving.gather_from(packing.store, std::vector<Vec3>(packing.store.total(), Vec3::Zero()));
 }
 
-// Of evenly spread points the count of a sphere's share errs by about points^(-2/3) = 1e-4 of it, and a dozen spheres
+// The count of evenly spread points in a sphere errs by about points^(-2/3) = 1e-4 of its share, and a dozen spheres
 // overlap here.
 TEST(LocalSolidFraction, IsTheShareOfPoints) {
   for (const bool disks : {false, true}) {

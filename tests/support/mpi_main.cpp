@@ -11,7 +11,7 @@
 
 namespace {
 
-// What MPI_Init leaks in plugins that it has unloaded again cannot be named in leaks_of_libraries.txt.
+// Leaks of MPI_Init in plugins that it has unloaded again cannot be named in leaks_of_libraries.txt.
 std::unique_ptr<thalweg::MpiSession> start_mpi(int& argc, char**& argv) {
 #ifdef THALWEG_FINDS_LEAKS
   const __lsan::ScopedDisabler leaks_are_not_ours;
@@ -19,7 +19,7 @@ std::unique_ptr<thalweg::MpiSession> start_mpi(int& argc, char**& argv) {
   return std::make_unique<thalweg::MpiSession>(argc, argv);
 }
 
-// To be called before MPI_Finalize, which unloads the other plugins.
+// Looks for leaks; call it before MPI_Finalize, which unloads the other plugins.
 void look_for_leaks() {
 #ifdef THALWEG_FINDS_LEAKS
   __lsan_do_leak_check();

@@ -67,7 +67,7 @@ struct Cavity {
   }
 };
 
-// By the polynomial through five samples around it.
+// Extreme of the polynomial through the five samples around it.
 double extreme(const std::vector<double>& f, double sign) {
   const int n = static_cast<int>(f.size());
   int best = 0;

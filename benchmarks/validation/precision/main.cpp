@@ -1,4 +1,4 @@
-// What populations in single precision cost, against double: bin/precision
+// The error of populations in single precision, against double: bin/precision
 //
 // Two steady flows over a range of relaxation times and velocities (cells a step), each run in both:
 //   channel  between half-link walls 32 cells apart, driven by a force, from the exact parabola on for 0.3 of the time

@@ -29,7 +29,7 @@
 namespace thalweg::benchmark {
 namespace {
 
-// What becomes of the momentum of covered cells; none: the sphere rests, and the fluid moves past it.
+// The fate of the momentum of covered cells; none: the sphere rests, and the fluid moves past it.
 enum class Covered { lost, to_grain, none };
 
 struct Regime {
@@ -129,7 +129,7 @@ void measure(const Regime& regime, const Setting& setting) {
   std::fflush(stdout);
 }
 
-// What is varied, by the words of the command line; the heading of its column first.
+// The heading of the column and the settings that are varied, by the words of the command line.
 std::pair<std::string, std::vector<Setting>> settings_of(int argc, char** argv) {
   const std::string mode = argc == 2 ? argv[1] : "";
   if (mode == "covered") {

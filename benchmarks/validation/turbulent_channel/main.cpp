@@ -157,7 +157,7 @@ private:
       energy += 0.5 * (m.uu[z] + m.vv[z] + m.ww[z]) / o_.cells[2];
     }
     const double u = o_.friction_velocity;
-    // From the first two cells and the plate at rest, of second order; meaningless where the plate slips.
+    // The shear follows from the first two cells and the plate at rest, to second order; not where the plate slips.
     const double shear =
         0.5 * (9 * m.velocity[0] - m.velocity[1] + 9 * m.velocity[o_.cells[2] - 1] - m.velocity[o_.cells[2] - 2]) / 3.0;
     const double largest = lbm::survey_of(fluid_).fastest.value;

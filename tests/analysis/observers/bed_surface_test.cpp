@@ -226,7 +226,7 @@ TEST(BedSurface, BeginsAnewWithOtherSettings) {
   EXPECT_FALSE(takes(keys(), {2, 500.0, 81.0}));
 }
 
-// Which runs have a stress at all, and where it comes from. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
+// Runs that have a stress at all, and its origin. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
 TEST(BedSurface, KnowsWhatDrivesTheWater) {
   const auto diagnostic_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
     Spheres spheres(world);

@@ -192,7 +192,7 @@ TEST(GrainProfiles, OfACompressedLatticeIsItsPressure) {
     for (int c = 0; c < 9; ++c)
       EXPECT_NEAR(mean.at("contact_stress")[9 * layer + c], c % 4 == 0 ? -pressure : 0.0, 1e-10 * pressure);
   }
-  // Of every grain that of the lattice over its share of the volume.
+  // Stress of every grain: that of the lattice over its share of the volume.
   const double of_grain = pressure * a * a * a / volume_of(2.5e-3, 0.0);
   for (const Mat3& stress : contact_stresses(Shown(grains).snapshot()))
     EXPECT_LT((stress + of_grain * Mat3::Identity()).norm(), 1e-10 * of_grain);

@@ -184,7 +184,7 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   const double sheet = 8.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(2.5e-3, 3) / area;
   EXPECT_NEAR(integral(values, "solid_fraction"), 3.0 * sheet, 1e-9 * sheet);
 
-  // What holds the lowest sheet, and the line in the middle of the lowest layer, which has the part of it above:
+  // The forces on the lowest sheet, and on the line in the middle of the lowest layer, which has the part of it above:
   // together the weight along the slope, of the free grains and of the fluid above. The spheres cover their volume
   // within a few per cent.
   const double middle = values.at("z").front(),
@@ -249,7 +249,7 @@ TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheFluid) {
   EXPECT_GT(values.at("side_wall_stress").front(), 0.5 * bed_stress);
 }
 
-// What a held sphere at a place leaves in the balance that scrapes along a wall at 1 mm/s.
+// The residue in the balance of a held sphere at a place that scrapes along a wall at 1 mm/s.
 Values of_scraping_sphere(WaterBox box, const Vec3& place) {
   box.closed = true;
   box.seeds = {glass_sphere(0, place, Vec3(1e-3, 0.0, 0.0))};

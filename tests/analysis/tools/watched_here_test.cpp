@@ -1,4 +1,4 @@
-// What homes of ids are asked, and which of the grains here are watched, by definition, as grains change their ranks.
+// The questions to homes of ids, and the grains of this rank that are watched, as grains change their ranks.
 #include "analysis/tools/watched_here.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr GlobalId count = 101;
 
 bool is_here(GlobalId id, int step) { return (id * 7 + id / 5 * step) % size_of(world) == rank_of(world); }
 
-// Of the grains here, in an order that changes.
+// Ids of the grains of this rank, in an order that changes.
 std::vector<GlobalId> ids_here(int step) {
   std::vector<GlobalId> ids;
   for (GlobalId n = 0; n < count; ++n) {

@@ -54,7 +54,7 @@ TEST(GradingCurve, TheMassFinerFollowsTheCurveToWithinAGrain) {
     }
 }
 
-// Of a curve straight over ln d from a to b, dN goes as d^-4: the number finer than d is (1 - (a/d)^3)/(1 - (a/b)^3).
+// On a curve straight over ln d from a to b, dN goes as d^-4: the number finer than d is (1 - (a/d)^3)/(1 - (a/b)^3).
 TEST(GradingCurve, TheNumberIsTheMassOverThatOfAGrain) {
   const double a = 1e-3, b = 4e-3;
   const std::int64_t count = 10000;

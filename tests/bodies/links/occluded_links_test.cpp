@@ -31,8 +31,8 @@ Vec3 difference(const Vec3& p, const Vec3& from) {
   return d;
 }
 
-// By definition: every lattice line from a cell of one ball, or from below the floor, into a cell of another, distances
-// by bisection.
+// Loads by definition: every lattice line from a cell of one ball, or from below the floor, into a cell of another,
+// distances by bisection.
 std::vector<Load> loads_by_definition(const std::vector<Ball>& balls, const Hydrostatic& rest) {
   const auto owner = [&](const Vec3& p) {
     for (std::size_t s = 0; s < balls.size(); ++s)

@@ -1,4 +1,4 @@
-// Which body holds which cell, while overlapping bodies move by any distance, against the definition.
+// The holder of every cell, while overlapping bodies move by any distance, against the definition.
 #include "bodies/map/body_map.hpp"
 
 #include "core/base/counter_random.hpp"
@@ -22,7 +22,7 @@ struct Ball {
   double radius;
 };
 
-// Of a cell's centre from a point, to the nearest image.
+// Offset of a cell's centre from a point, to the nearest image.
 double offset(int axis, int cell, double from) {
   const int n = cells[static_cast<std::size_t>(axis)];
   const double d = (axis < 2 ? (cell % n + n) % n : cell) + 0.5 - from;

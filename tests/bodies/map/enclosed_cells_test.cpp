@@ -1,4 +1,4 @@
-// Which fluid cells are enclosed, alone or two together, wherever the borders between ranks are.
+// The fluid cells that are enclosed, alone or two together, wherever the borders between ranks are.
 #include "bodies/map/enclosed_cells.hpp"
 
 #include "tests/bodies/enclosed_by_definition.hpp"
@@ -42,7 +42,7 @@ public:
     enclosed_.update(map_);
   }
 
-  // Whether it finds its cells as the definition does, which knows all spheres everywhere.
+  // Compares the cells found with those of the definition, which knows all spheres everywhere.
   template <typename IsFluid>
   testing::AssertionResult agrees(IsFluid is_fluid, std::set<Index3>& found) const {
     for (int z = 0; z < block_.size()[2]; ++z)

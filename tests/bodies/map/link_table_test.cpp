@@ -12,7 +12,7 @@ namespace {
 // Every other body has its crossings stored.
 bool stores_crossings(std::int32_t body) { return body % 2 == 0; }
 
-// What LinkTable says of the links of a range: narrow ones come first, copies of the last fill it up.
+// The promise of LinkTable about the links of a range: narrow ones come first, copies of the last fill it up.
 void expect_whole_vectors(const LinkStream& links, const LinkTable::LinkRange& range) {
   for (std::uint32_t k = 0; k < range.count; ++k)
     ASSERT_EQ(LinkTag::is_narrow(links.tag[range.first + k]), k < range.narrow);

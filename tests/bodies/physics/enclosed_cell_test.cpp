@@ -79,7 +79,7 @@ protected:
   std::vector<LinkBody> bodies_;
 };
 
-// What a step returns is not much larger than the excess at which as much leaks out.
+// The mass returned in a step is not much larger than the excess at which as much leaks out.
 TEST_P(EnclosedCell, KeepsTheDensityOfRestWhateverItsBodiesReturn) {
   fluid_.initialise([](const Vec3&) { return lbm::FluidState{0.05, Vec3::Zero()}; });
   bodies_[0].returned = 1e-3;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double force = 1e-7;
 
-// Of radius 1e8 cells: 4.5e-8 cells are missing at three cells from the middle.
+// A radius of 1e8 cells: 4.5e-8 cells are missing at three cells from the middle.
 constexpr double radius = 1e8, curvature = 1e-3;
 
 class Gap {
@@ -89,7 +89,7 @@ lbm::CollisionParameters parameters(lbm::CollisionModel model, double viscosity)
   return p;
 }
 
-// What is left of the start has decayed: with the flow's own rate 8 nu, and with that of the odd part.
+// Steps after which the start has decayed: with the flow's own rate 8 nu, and with that of the odd part.
 int settling_steps(double viscosity) { return static_cast<int>(20.0 / (8.0 * std::min(viscosity, 0.02))); }
 
 TEST(NarrowGaps, FlowAsTheMagicParameterSays) {

@@ -89,7 +89,7 @@ private:
     return false;
   }
 
-  // On a line with a sphere on one side, and a sphere or within three cells a wall on the other.
+  // True on a line with a sphere on one side, and a sphere or within three cells a wall on the other.
   bool in_gap(std::size_t at) const {
     const auto covered = [&](int i) { return !beyond_wall(at, i) && owner_[neighbour(at, i)] >= 0; };
     const auto meets_wall = [&](int i) {
@@ -151,7 +151,7 @@ private:
     const int z = static_cast<int>(at) / n_[0] / n_[1] + D3Q19::c[i][2];
     return walls_ && (z < 0 || z >= n_[2]);
   }
-  // What enters along i from beyond a wall: bounced at the floor, mirrored at the top unless it would come from a
+  // Population entering along i from beyond a wall: bounced at the floor, mirrored at the top unless it comes from a
   // sphere.
   double from_wall(std::size_t at, int i) const {
     const int back = D3Q19::opposite(i);

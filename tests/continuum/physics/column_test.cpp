@@ -90,7 +90,7 @@ TEST(Column, AStateGoesOnInCellsOfItsOwnHeightOnly) {
     other.load(reader);
   };
   EXPECT_NO_THROW(load_with_height(1.0 + 1e-12));
-  // As for a slope of 0.0161 in place of 0.016, with as many cells.
+  // Heights as for a slope of 0.0161 in place of 0.016, with as many cells.
   for (const double factor : {0.9938, 1.0 / 0.9938, 1.0 + 1e-6}) EXPECT_THROW(load_with_height(factor), InputError);
 }
 

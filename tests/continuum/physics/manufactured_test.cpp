@@ -16,7 +16,7 @@ constexpr double height = 0.02;  // m
 
 double wave(double z) { return std::numbers::pi * z / height; }
 
-// With no slip below, no shear at the top, and curvature zero at both ends.
+// Profiles with no slip below, no shear at the top, and curvature zero at both ends.
 double grain_speed(double z) { return 0.3 * (z / height + std::sin(wave(z)) / std::numbers::pi); }
 double grain_rate(double z) { return 0.3 / height * (1.0 + std::cos(wave(z))); }
 double fluid_speed(double z) { return 1.5 * grain_speed(z); }
@@ -60,7 +60,7 @@ public:
   double fluid_stress(double z) const { return (p_.mixture.viscosity + eddy(z)) * fluid_rate(z); }
 
 private:
-  // Of fourth order.
+  // Derivative of fourth order.
   static double derivative(const std::function<double(double)>& f, double z) {
     const double h = 1e-4 * height;
     return (8.0 * (f(z + h) - f(z - h)) - f(z + 2.0 * h) + f(z - 2.0 * h)) / (12.0 * h);
@@ -128,7 +128,7 @@ Errors errors_of(int cells) {
   return {std::sqrt(errors.fraction), std::sqrt(errors.grains), std::sqrt(errors.fluid)};
 }
 
-// Of the fluxes that the given profiles have on the faces between cells: root mean squares, m/s, Pa and Pa.
+// Errors of the fluxes of the given profiles on the faces between cells: root mean squares, m/s, Pa and Pa.
 Errors flux_errors_of(int cells) {
   const ColumnParameters parameters = parameters_of(cells);
   const ColumnEquations equations(parameters);

@@ -1,4 +1,4 @@
-// What RFC 3629 takes for text, and what is made of other bytes.
+// Text according to RFC 3629, and the treatment of other bytes.
 #include "core/base/utf8.hpp"
 
 #include <gtest/gtest.h>

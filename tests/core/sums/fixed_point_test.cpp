@@ -41,7 +41,7 @@ TEST(FixedPoint, RoundsToTheNearestAndTiesToEven) {
   EXPECT_EQ(LatticeFixed::to_double(LatticeFixed::from(100.0 + 0x1p-44)), 100.0 + 0x1p-44);
 }
 
-// Whether the work leaves the range in which sums are exact.
+// True if the work leaves the range in which sums are exact.
 template <typename Work>
 bool leaves_range(Work&& work) {
   SumRange::reset();

@@ -1,4 +1,4 @@
-// What the fluid loses the grains gain, and a grain that drifts with the fluid feels nothing.
+// Momentum that the fluid loses is gained by the grains, and a grain that drifts with the fluid feels nothing.
 #include "tests/coupling/water_box.hpp"
 
 #include "core/parallel/mpi_session.hpp"

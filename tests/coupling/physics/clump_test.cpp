@@ -21,7 +21,7 @@ std::unique_ptr<LatticeSystem<double>> system_of(const WaterBox& box) {
   return make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
 }
 
-// What the members' loads come to about a centre: force and torque, on the rank that owns the clump.
+// The sum of the members' loads about a centre: force and torque, on the rank that owns the clump.
 struct Sum {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };

@@ -1,4 +1,4 @@
-// What cells carry that grains cover: no momentum is lost between fluid and grains.
+// The momentum of cells that grains cover: none is lost between fluid and grains.
 #include "tests/coupling/water_box.hpp"
 
 #include "core/parallel/mpi_session.hpp"
@@ -9,7 +9,7 @@
 namespace thalweg::coupling::covered_momentum_test {
 namespace {
 
-// What there is of the fluid, lattice units, over all ranks.
+// Totals of the fluid, lattice units, over all ranks.
 struct Content {
   double mass = 0.0;
   Vec3 momentum = Vec3::Zero();
@@ -70,7 +70,7 @@ TEST(CoveredMomentum, ReachesTheGrainWithEveryRule) {
     EXPECT_LT(missing_impulse(true, rule, steps).norm(), round_off);
 }
 
-// What is known to be wrong without it, so that the test above can fail.
+// The error that is known to arise without it, so that the test above can fail.
 TEST(CoveredMomentum, IsMissingWhereItIsLost) {
   EXPECT_GT(missing_impulse(false, bodies::LinkRule::bouzidi, steps).norm(), 1000.0 * round_off);
 }

@@ -21,7 +21,7 @@ WaterBox starting_flow(bool on_grains) {
   return box;
 }
 
-// Of the velocity that the fluid has.
+// Lag of a grain as a share of the velocity of the fluid.
 double lag_of_grain(const LatticeSystem<double>& system) {
   const double fluid = system.fluid().totals().momentum.x() / static_cast<double>(system.fluid().totals().cells) * 8.0;
   return 1.0 - system.grains().store().velocity[0].x() / fluid;

@@ -76,7 +76,7 @@ TEST(HeldGrains, ARigidAssemblyTakesFromTheFluidWhatItsLoadSays) {
     const Vec3 mine = t.refilled - t.covered - t.link_momentum;
     Vec3 exchanged;
     for (int a = 0; a < 3; ++a) exchanged[a] = sum_over_ranks(MPI_COMM_WORLD, mine[a]);
-    // As in balance_test.cpp: the totals round every cell to within 2^-37.
+    // The totals round every cell to within 2^-37, as in balance_test.cpp.
     ASSERT_LT((after.momentum - before.momentum - exchanged).norm(), 2.0 * 0x1p-37 * static_cast<double>(after.cells));
     before = after;
     // The load applied in the next step is extrapolated from the last three exchanges

@@ -40,7 +40,7 @@ TEST(Load, HasNoPartThatAlternatesFromStepToStep) {
   for (const LoadAveraging rule : both_rules) EXPECT_EQ(loads(rule, exchanges).back(), Vec3(1.0, 2.0, 0.0));
 }
 
-// Of a force that grows evenly the load is that of the middle of the coming step, one step after the mean.
+// The load of a force that grows evenly is that of the middle of the coming step, one step after the mean.
 TEST(Load, HasNoLagWhereItIsExtrapolated) {
   std::vector<Vec3> exchanges;
   for (int n = 0; n < 8; ++n) exchanges.push_back(Vec3(n, 0.0, 0.0));

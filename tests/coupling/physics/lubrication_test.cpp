@@ -54,7 +54,7 @@ struct Motion {
 
 constexpr double cells_in_radius = 5.0;
 
-// What the first body feels in a box of 48 cells, after the flow has become steady: 400 steps are 2.7 R^2/nu. The
+// Forces on the first body in a box of 48 cells, after the flow has become steady: 400 steps are 2.7 R^2/nu. The
 // bodies move by 4e-4 cells in that time.
 Resistance resistance(const std::vector<Motion>& bodies, bool floor) {
   constexpr double step_length = 1e-6;  // cells

@@ -192,7 +192,7 @@ TEST(WaterMass, AddingDensityGivesNoMomentum) {
   EXPECT_NEAR((after.momentum - before.momentum).norm(), 0.0, 960.0 * 0x1p-36);
 }
 
-// What is owed, the sums of the account and the density that presses on nothing travel with the state.
+// The mass owed, the sums of the account and the density that presses on nothing travel with the state.
 TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
   box.grain_stress = true;

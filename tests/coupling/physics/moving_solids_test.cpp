@@ -192,8 +192,8 @@ TEST(MovingSolids, AreLiftedByTheWaterTheyDisplace) {
   }
 }
 
-// What links and cells that change hands take is owed, and comes back: excess mass and owed mass together stay what
-// they were, to round-off.
+// The mass that links and cells that change hands take is owed, and comes back: excess mass and owed mass together
+// stay what they were, to round-off.
 TEST(MovingSolids, OweTheWaterWhatTheyTake) {
   WaterBox box;
   box.cells = {30, 24, 26};

@@ -57,7 +57,7 @@ TEST(Ramp, GivesThePeriodicFluidItsIntegral) {
   EXPECT_EQ(diagnostic(*system, "body_force_x"), 1e-5);
 }
 
-// What the controller steers is its own from the first step; the other axes rise.
+// The axis that the controller steers is its own from the first step; the other axes rise.
 TEST(Ramp, LeavesTheSteeredAxisAlone) {
   LatticeParameters p = falling_fluid(50.0);
   p.flow_target = lbm::FlowTarget{.axis = 0, .velocity = 0.01, .response_time = 100.0, .interval = 10};

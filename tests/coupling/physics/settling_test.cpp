@@ -51,7 +51,7 @@ TEST(Settling, SphereReachesItsTerminalSpeedAndRestsOnTheFloor) {
   EXPECT_LT(-fastest, 1.05 * terminal);
   const Location at_rest = place_of_grain(system->grains());
   EXPECT_LT(std::abs(at_rest.speed), 1e-4);
-  // On the floor: the overlap that carries the submerged weight, m g (1 - 1/2.55) / k_n = 5e-8 m.
+  // The sphere is on the floor: the overlap that carries the submerged weight is m g (1 - 1/2.55) / k_n = 5e-8 m.
   EXPECT_NEAR(at_rest.height, 2.5e-3, 1e-6);
 }
 

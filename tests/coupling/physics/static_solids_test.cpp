@@ -40,7 +40,7 @@ struct CutLink {
   double distance;
   Vec3 arm;
 };
-// By tile, place in it and direction.
+// Links by tile, place in it and direction.
 std::map<std::tuple<int, std::uint32_t, int>, CutLink> links_of(const LatticeSystem<double>& system) {
   std::map<std::tuple<int, std::uint32_t, int>, CutLink> all;
   int number = 0;
@@ -167,7 +167,7 @@ TEST(StaticSolids, ForgetAllSumsOfAStepInTheNext) {
   SumRange::reset();
   for (int step = 0; step < 40; ++step) system->advance();
   EXPECT_FALSE(SumRange::was_left());
-  // As large as they would be before the step in which they leave it.
+  // Sums as large as they would be before the step in which they leave the range.
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max(),
                          least = std::numeric_limits<std::int64_t>::min();
   auto& body = const_cast<bodies::LinkBody&>(system->bodies().body(bodies::slot_of_solid(0)));

@@ -36,7 +36,7 @@ LubricationParameters parameters() {
   return p;
 }
 
-// What observers see is the force that acts, and meets in the middle of the gap.
+// The force that observers see is the one that acts, and meets in the middle of the gap.
 void expect_seen(GrainStore& store, const PackedGrainState& grains, const NeighbourList& list, const PeriodicBox& box,
                  std::span<const Plane> walls) {
   store.owned = store.total();

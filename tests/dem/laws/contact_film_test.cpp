@@ -37,7 +37,7 @@ TEST(ContactFilm, IsCriticalAtRestAndHalfAtItsStokesNumber) {
   EXPECT_NEAR(at(15.0).across, 2.0 / 7.0 * at(15.0).along, 1e-15);
 }
 
-// Of two equal spheres half the mass counts and half the radius: St is twice as large at the same speed of approach.
+// Half the mass of two equal spheres counts and half the radius: St is twice as large at the same speed of approach.
 TEST(ContactFilm, OfTwoSpheresIsThatOfAWallAtTwiceTheSpeed) {
   const ContactFilm film(water);
   const double stiffness = 300.0;

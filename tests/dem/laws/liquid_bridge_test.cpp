@@ -25,14 +25,14 @@ ContactParameters moist(double restitution) {
   return contact;
 }
 
-// As published: F/(2 pi R gamma cos theta) and its argument, for spheres of equal radius.
+// Published force: F/(2 pi R gamma cos theta) and its argument, for spheres of equal radius.
 double published(const LiquidBridgeParameters& liquid, double radius, double gap) {
   const double s = gap * std::sqrt(radius / liquid.volume);
   return 2.0 * pi * radius * liquid.surface_tension * std::cos(liquid.contact_angle) /
          (1.0 + 1.05 * s + 2.5 * std::pow(s, 2));
 }
 
-// Of the published force up to where the bridge breaks, by Simpson's rule.
+// Work of the published force up to where the bridge breaks, by Simpson's rule.
 double work_to_break(const LiquidBridgeParameters& liquid, double radius) {
   constexpr int intervals = 1000;
   const double end = (1.0 + 0.5 * liquid.contact_angle) * std::cbrt(liquid.volume), h = end / intervals;
@@ -105,7 +105,7 @@ TEST(LiquidBridge, FormsAtATouchAndBreaksAtADistance) {
   EXPECT_GT(approaching, 1000);
   EXPECT_GT(stretched, 1000);
   EXPECT_GT(broken, 1000);
-  // Of the force at steps of a thousandth of the way, and with up to one of them missing at the break.
+  // The work is summed in steps of a thousandth of the way, of which the last may be missing at the break.
   EXPECT_NEAR(work, work_to_break(water, test::glass_radius), 3e-3 * work);
 }
 

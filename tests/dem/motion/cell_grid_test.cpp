@@ -61,7 +61,7 @@ TEST(CellGrid, FindsAllPairsInAFullBox) {
     }
 }
 
-// As on a rank whose block is a corner of the box: points on both sides of the periodic faces.
+// Points as on a rank whose block is a corner of the box: on both sides of the periodic faces.
 TEST(CellGrid, FindsAllPairsAcrossPeriodicFaces) {
   const PeriodicBox box{Vec3(40.0, 30.0, 20.0), {true, true, false}};
   for (unsigned seed = 1; seed <= 5; ++seed) {

@@ -55,7 +55,7 @@ std::shared_ptr<const ClumpShape> ring(const Model& m) {
   return test::shape_of(disks, thickness);
 }
 
-// Whether the upper of two interlocked grains, which cannot turn, leaves its place under a load that pulls it along
+// True if the upper of two interlocked grains, which cannot turn, leaves its place under a load that pulls it along
 // with `friction` times what presses it on the lower one.
 bool slides(const Model& m, double friction) {
   // So light that springing back at the start, an overlap of 5e-7 diameters, lifts nothing out of the shallowest gap:

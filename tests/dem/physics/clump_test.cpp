@@ -303,7 +303,7 @@ TEST(Clump, OfDisksTurnsInItsPlane) {
   EXPECT_LT((clump.angular_velocity - Vec3(0.0, -impulse * radius / inertia, 0.0)).norm(),
             0.01 * impulse * radius / inertia);
   EXPECT_NEAR(grains.kinetic_energy() / energy, 1.0, 1e-3);
-  // In the plane to the last bit.
+  // They are in the plane to the last bit.
   for (std::size_t s = 0; s < 3; ++s) {
     EXPECT_EQ(grains.store().position[s].y(), 0.005);
     EXPECT_EQ(grains.store().velocity[s].y(), 0.0);

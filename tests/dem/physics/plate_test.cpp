@@ -125,7 +125,7 @@ TEST(Plate, LetsAGrainRollOffItsEdge) {
     test::step(grains);
   }
   while (grains.time() < 0.4) test::step(grains);
-  // On the floor, but for the overlap that bears its weight.
+  // The grain is on the floor, but for the overlap that bears its weight.
   EXPECT_NEAR(store.position[0].z(), radius - 9.8 * store.mass[0] / 20000.0, 1e-8);
 }
 

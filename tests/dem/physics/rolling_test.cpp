@@ -58,7 +58,7 @@ TEST(RollingFriction, SlowsARollingSphereByFiveSeventhsOfItsFriction) {
         EXPECT_NEAR(v[0], v1 - a * (time - 0.05), 2e-3 * v0) << time;
       }
     }
-    // What comes before that is the setting down: the moment is that of the force, whose mean is the weight.
+    // The time before that is the setting down: the moment is that of the force, whose mean is the weight.
     EXPECT_NEAR(v1, v0 - a * 0.05, 5e-3 * v0);
     for (int n = 0; n < 2400; ++n) test::step(grains);
     // 0.8 s: the rolling spring has swung back, 5/7 mu_r g/omega_r at first, and its swing has died out.

@@ -49,7 +49,7 @@ TEST_P(LongestStep, GainsNoEnergy) {
   GrainSeed seed = test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius), Vec3(speed, 0.0, -speed));
   seed.angular_velocity = Vec3(0.0, -speed / test::glass_radius, 0.0);
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, {seed});
-  // Of motion along the floor and about it, which gravity does not feed.
+  // Energy of motion along the floor and about it, which gravity does not feed.
   const auto energy = [&] {
     const Vec3 &v = grains.store().velocity[0], &w = grains.store().angular_velocity[0];
     return 0.5 * mass * v.head<2>().squaredNorm() + 0.2 * mass * std::pow(test::glass_radius, 2.0) * w.squaredNorm();

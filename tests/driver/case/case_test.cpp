@@ -52,7 +52,7 @@ TEST(Case, CellsAreRoundedNotCut) {
   EXPECT_EQ(cells_of(domain), (Index3{3000, 7000, 105}));  // 0.3 / 0.0001 is 2999.9999999999995
 }
 
-// As long as the flow, by its speed, or its viscosity, by the relaxation time, allows; two digits, rounded down.
+// A step as long as the flow, by its speed, or its viscosity, by the relaxation time, allows; two digits, rounded down.
 TEST(Case, TheStepFollowsFromTheFlow) {
   Case c = wide_bed();
   c.run.until = 30.0;

@@ -1,4 +1,4 @@
-// What messages advise is not refused.
+// Values that messages advise are not refused.
 #include "driver/case/limit_text.hpp"
 
 #include <gtest/gtest.h>

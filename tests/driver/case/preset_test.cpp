@@ -15,7 +15,7 @@ using testing::message_of;
 using testing::put;
 using testing::ScratchFolder;
 
-// Without what the preset sets, but for the friction of walls.
+// A case without the keys that the preset sets, but for the friction of walls.
 const std::string published = R"(system: resolved
 preset: zhang2022
 domain:
@@ -60,7 +60,7 @@ TEST(Preset, LetsTheCaseWin) {
     EXPECT_TRUE(contains(own, key)) << own;
 }
 
-// What excludes a key of the preset takes its place.
+// A key that excludes one of the preset takes its place.
 TEST(Preset, GivesWayToAlternatives) {
   const Case c = read({"contact.restitution=0.9", "contact.duration=1.0e-3", "domain.boundaries.y_low=no_slip",
                        "domain.boundaries.y_high=free_slip"});
@@ -89,9 +89,9 @@ TEST(Preset, IsRefusedWithThePlaceAndTheNames) {
   };
   EXPECT_TRUE(contains(message({"preset=zhang"}), "preset = \"zhang\": there is no such preset; expected zhang2022."));
   EXPECT_TRUE(contains(message({"system=grains"}), "case.yaml:2: preset = \"zhang2022\": it is for system: resolved"));
-  // Of keys of the case the place is the case's, of those of the preset the preset's; what is taken out stays out.
+  // Keys of the case are located in the case, those of the preset in the preset; a removed key stays out.
   EXPECT_TRUE(contains(message({"contact.friction=-1"}), "--set contact.friction=-1: contact.friction = -1"));
-  // What is missing in a section of the preset is missing in the case.
+  // A key that is missing in a section of the preset is missing in the case.
   std::string without = published;
   const std::size_t fluid = without.find("fluid: ");
   without.erase(fluid, without.find("gravity: ") - fluid);

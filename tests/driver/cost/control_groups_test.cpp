@@ -1,4 +1,4 @@
-// What control groups grant, of both versions and nested, in made-up hierarchies.
+// Limits set by control groups, of both versions and nested, in made-up hierarchies.
 #include "driver/cost/control_groups.hpp"
 
 #include "driver/cost/cores.hpp"
@@ -31,7 +31,7 @@ TEST(ControlGroups, GrantMemory) {
   EXPECT_TRUE(std::isinf(memory_by_quota("")));
 }
 
-// As Slurm arranges them: the limit of the memory is the job's, that of the cores the step's.
+// Groups as Slurm arranges them: the limit of the memory is the job's, that of the cores the step's.
 TEST(ControlGroups, OfAJobAreThoseOfAllGroupsAboveTheProcess) {
   const ScratchFolder folder;
   const std::filesystem::path job = folder.path() / "system.slice/slurmstepd.scope/job_17";

@@ -1,4 +1,4 @@
-// What a run takes of a machine's memory, and the refusal of one that does not fit.
+// The share of a machine's memory that a run takes, and the refusal of one that does not fit.
 #include "driver/cost/memory.hpp"
 
 #include "core/base/error.hpp"

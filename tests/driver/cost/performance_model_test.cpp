@@ -1,4 +1,4 @@
-// What is planned for many ranks, against counts by hand. tests/system and benchmarks measure the rest.
+// The plan for many ranks, against counts by hand. tests/system and benchmarks measure the rest.
 #include "driver/cost/performance_model.hpp"
 
 #include "driver/cost/sample_case.hpp"

@@ -36,7 +36,7 @@ bool rebounds_too_weakly(const Case& c) {
   });
 }
 
-// Of the flume's two populations the smaller is fixed and does not count.
+// The smaller of the flume's two populations is fixed and does not count.
 TEST(ContactStiffness, LastsFourStepsForEachCellOfADiameterInWater) {
   const Case c = read_text(flume);
   const double stiffness = stiffness_for(4.0 * cells * step, 0.93);
@@ -49,7 +49,7 @@ TEST(ContactStiffness, LastsFourStepsForEachCellOfADiameterInWater) {
   EXPECT_FALSE(rebounds_too_weakly(c));
 }
 
-// What is heavier or larger touches for longer: of two the one whose contacts need the softer spring decides.
+// A heavier or larger grain touches for longer: of two the one whose contacts need the softer spring decides.
 TEST(ContactStiffness, SuitsTheGrainsThatTouchTheShortest) {
   const Case both = read_text(flume, {"grains.1.fixed=false"});
   EXPECT_NEAR(default_contact_steps(both), 32.0, 1e-9);  // 4 mm
@@ -115,7 +115,7 @@ TEST(ContactStiffness, FollowsTheStepUnlessItIsGiven) {
   EXPECT_EQ(doubled(number).coupling.grain_steps_per_fluid_step, 50);
 }
 
-// What a run keeps are the stiffnesses as numbers.
+// A run keeps the stiffnesses as numbers.
 TEST(ContactStiffness, IsKeptAsANumber) {
   for (const std::vector<std::string>& settings :
        {std::vector<std::string>{}, {"contact.duration=3.0e-4"}, {"contact.normal_stiffness=700"}}) {

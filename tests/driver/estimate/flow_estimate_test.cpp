@@ -17,7 +17,7 @@ constexpr double d = 5e-3, depth = 0.0412;
 
 Case wide_bed(double slope = 0.016) { return water_over_glass(d, slope, depth, 0.040, lbm::FaceType::periodic); }
 
-// Without its grains, and of another viscosity: a film over a bare floor of the whole height.
+// The case without its grains, and of another viscosity: a film over a bare floor of the whole height.
 Case film(double viscosity) {
   Case c = wide_bed();
   c.grains.clear();

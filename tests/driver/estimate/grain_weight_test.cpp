@@ -1,4 +1,4 @@
-// What gravity and a held flow make of the weight of a grain.
+// The weight of a grain under gravity and a held flow.
 #include "driver/estimate/grain_weight.hpp"
 
 #include "tests/driver/water_over_glass.hpp"

@@ -86,7 +86,7 @@ TEST(CaseReader, TakesAsManySubStepsAsTheContactNeeds) {
   EXPECT_EQ(c.coupling.grain_steps_per_fluid_step, 3);
   EXPECT_EQ(sub_steps_needed(c), 3);
   EXPECT_LE(grain_time_step(c), shortest_contact(c) / 20.0);
-  // What is kept with the run is the number.
+  // The run keeps the number.
   EXPECT_NE(resolved_yaml(c).find("grain_steps_per_fluid_step: 3\n"), std::string::npos);
   EXPECT_EQ(read(flume, {"contact.normal_stiffness=20000", "fluid.time_step=1e-6"}).coupling.grain_steps_per_fluid_step,
             1);

@@ -105,7 +105,7 @@ TEST(DiskSpace, CountsTheGrainsAndFieldsOfParts) {
   EXPECT_NEAR(disk_space(c).fluid, single * 36.0 / 20.0, 1.0);  // four reals and one id
 }
 
-// What a user plans a run by, in lines of their own.
+// The figures by which a user plans a run, in lines of their own.
 TEST(CheckReport, ShowsTimesOverlapsAndWhatTheSlopeAsksFor) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   const auto line = [&c](const std::string& name) -> std::string {

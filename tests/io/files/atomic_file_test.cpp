@@ -12,7 +12,7 @@
 
 static int interruptions = 0;
 
-// That of the system, but for the first calls, which fail as on tmpfs while a signal is pending.
+// The call of the system, but for the first ones, which fail as on tmpfs while a signal is pending.
 extern "C" int fallocate(int file, int mode, off_t offset, off_t length) {
   if (interruptions == 0) return static_cast<int>(::syscall(SYS_fallocate, file, mode, offset, length));
   --interruptions;

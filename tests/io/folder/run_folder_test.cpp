@@ -1,4 +1,4 @@
-// What a run may and may not do to a folder.
+// Actions that a run may and may not take on a folder.
 #include "io/folder/run_folder.hpp"
 #include "core/base/error.hpp"
 #include "io/files/atomic_file.hpp"
@@ -124,14 +124,14 @@ TEST_F(RunFolderTest, RotationKeepsTheNewestAndNamesTheLatest) {
   EXPECT_EQ(folder.latest_checkpoint(), folder.checkpoint(1050));
   EXPECT_TRUE(fs::exists(folder.checkpoints() / "mine.h5"));
 
-  // What killed runs leave behind goes with the next checkpoint.
+  // Remains of killed runs go with the next checkpoint.
   put(folder.checkpoints() / "step_1070.h5.partial", "half a state");
   put(folder.checkpoints() / "latest.partial", "step_10");
   folder.rotate_checkpoints(1050, 2);
   EXPECT_FALSE(fs::exists(folder.checkpoints() / "step_1070.h5.partial"));
   EXPECT_FALSE(fs::exists(folder.checkpoints() / "latest.partial"));
 
-  // Which is the latest need not be known.
+  // The latest need not be known.
   const std::vector<fs::path> newest_first{folder.checkpoint(1050), folder.checkpoint(1000)};
   EXPECT_EQ(folder.checkpoints_to_try(), newest_first);
   for (const char* text : {"", "step_", "step_990.h5\n", "../step_1000.h5\n"}) {

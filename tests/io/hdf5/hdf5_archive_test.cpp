@@ -112,7 +112,7 @@ TEST(Hdf5Archive, ReadsBackTheSameBits) {
   EXPECT_EQ(datasets[2].type, "int64");
 }
 
-// As a process leaves it that is killed while it opens such a file: Open MPI's semaphore of this name is taken.
+// The state left by a process killed while it opens such a file: Open MPI's semaphore of this name is taken.
 TEST(Hdf5Archive, IsNotHeldUpByWhoHasBeenKilled) {
   const ScratchFolder folder;
   for (const char* name : {"held_up.h5.partial", "held_up.h5"})

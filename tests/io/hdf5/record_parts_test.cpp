@@ -50,7 +50,7 @@ std::vector<Number> numbers(Hdf5Reader& file, const std::string& name) {
   return values;
 }
 
-// By name, the rows of each part; times and velocities must be those of seconds().
+// Rows of each part, by name; times and velocities must be those of seconds().
 std::vector<std::pair<std::string, std::vector<double>>> parts_in(const std::filesystem::path& folder) {
   MPI_Barrier(MPI_COMM_WORLD);
   std::vector<std::pair<std::string, std::vector<double>>> parts;

@@ -1,4 +1,4 @@
-// Which grains a part of the output shows, and what of them: the rules one by one, and what is refused.
+// The grains, and their fields, that a part of the output shows: the rules one by one, and refusals.
 #include "core/keys/key_error.hpp"
 #include "io/vtk/grain_fields.hpp"
 #include "io/vtk/output_keys.hpp"

@@ -32,7 +32,7 @@ void expect_conservation(double (&f)[19], const CollisionParameters& parameters)
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(after.momentum[a] - before.momentum[a], parameters.force[a], 1e-16);
 }
 
-// To a few units in the last place of populations of the order of 0.05.
+// Exact to a few units in the last place of populations of the order of 0.05.
 TEST_F(Collision, ConservesMassAndAddsExactlyTheForce) {
   parameters.subgrid = Subgrid::smagorinsky(0.2);
   expect_conservation<CollisionModel::bgk>(f, parameters);
@@ -92,8 +92,8 @@ TEST_F(Collision, TrtAgreesWithTheFormulaWrittenOut) {
   }
 }
 
-// What a bulk relaxation time of its own changes: the trace of the second moment after the collision, which is the one
-// of equilibrium and half force, u.F, and (1 - 1/tau_b) tr Pi; mass, momentum and all that has no trace stay.
+// A bulk relaxation time of its own changes the trace of the second moment after the collision, which is the one of
+// equilibrium and half force, u.F, and (1 - 1/tau_b) tr Pi; mass, momentum and all that has no trace stay.
 template <CollisionModel model, SubgridModel subgrid>
 void expect_only_the_trace_differs(const double (&f)[19], CollisionParameters parameters, double tau_b) {
   const WrittenOut w(f, parameters);

@@ -86,7 +86,7 @@ TEST(Qr, ActsWhereFluidIsSqueezedAlongOneAxis) {
   EXPECT_NEAR(relaxation_time_of(-2.0 / 3.0 * tau0 * s * axial), tau0, 1e-15);
 }
 
-// To a rounding of the determinant, which enters tau times 9 C/(tau_0 rho) and some 1e-16 of Pi.
+// Exact to a rounding of the determinant, which enters tau times 9 C/(tau_0 rho) and some 1e-16 of Pi.
 TEST(Qr, IsNothingInShearInTwoDimensionsAndAtRest) {
   const double tau0 = thin_fluid().relaxation_time;
   for (const double rate : {1e-6, 1e-3, 0.05}) {

@@ -239,7 +239,7 @@ void compare_with_one_rank() {
   EXPECT_EQ(differing, 0);
 }
 
-// Of a slab at the periodic border and of one inside, whose neighbours the field must know as well.
+// Gradients of a slab at the periodic border and of one inside, whose neighbours the field must know as well.
 TEST(FlowFields, TheGradientsOfARegionAreThoseOfTheWhole) {
   const Index3 cells{16, 12, 12};
   const Decomposition decomposition(cells, 1.0, {true, true, true}, layout_of_all_ranks(cells));

@@ -70,7 +70,7 @@ FluidState waves_twice_as_fast(const Vec3& s) {
   return {4.0 * slow.density_deviation, 2.0 * slow.velocity};
 }
 
-// What is linear across the walls is met exactly between the outermost centres of the saved cells.
+// A profile linear across the walls is met exactly between the outermost centres of the saved cells.
 FluidState shear(const Vec3& s) { return {0.001, Vec3(0.05 * s.z(), 0.0, 0.0)}; }
 
 TEST(FlowTransfer, IsOfSecondOrder) {
@@ -110,7 +110,7 @@ TEST(FlowTransfer, MeetsShearExactlyAndStaysLevelNextToWalls) {
   }
 }
 
-// What the force of the saved flow was is not known, so that all of it counts, not half.
+// The force of the saved flow is not known, so that all of it counts, not half.
 TEST(FlowTransfer, BeginsHalfAForceTooFast) {
   const FluidState uniform{0.25, Vec3(0.03, 0.0, 0.01)};
   const Vec3 force(2e-3, 0.0, 0.0);

@@ -15,7 +15,7 @@ bool has_covered_neighbour(const CellMap& map, std::ptrdiff_t cell) {
   return false;
 }
 
-// By what stands at the ends of each line through the cell: a body on one side; a body or a wall on the other.
+// True if a line through the cell has a body at one end, and a body or a wall at the other.
 bool is_in_gap(const CellMap& map, const WallPositions& walls, const Index3& cell) {
   const std::ptrdiff_t at = map.indexing().index(cell[0], cell[1], cell[2]);
   for (int i = 1; i < D3Q19::directions; ++i) {

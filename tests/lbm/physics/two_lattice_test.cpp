@@ -32,7 +32,7 @@ public:
     for (std::size_t cell = 0; cell < collided_.size(); ++cell) collided_[cell] = collide(streamed_[cell]);
   }
 
-  // Of the populations after the collision: the velocity half-way through it.
+  // Velocity of the populations after the collision: that half-way through it.
   Vec3 velocity(int x, int y, int z) const {
     const auto& f = collided_[index(x, y, z)];
     const Moments m = sums(f);

@@ -197,7 +197,7 @@ TEST(ModelFluidClump, OnTheFloorHandsItsDragToIt) {
   }
 }
 
-// What is held regardless of forces is so by the floor as well: a plate of grains that is drawn along it moves on.
+// A body held regardless of forces is so by the floor as well: a plate of grains that is drawn along it moves on.
 TEST(ModelFluidClump, ThatIsHeldKeepsItsVelocityOnTheFloor) {
   const Decomposition plane({20, 2, 20}, 2.5e-3, {true, true, false}, {1, 1, 1});
   const auto shape = ring();
