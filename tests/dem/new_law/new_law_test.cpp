@@ -40,6 +40,7 @@ GrainParameters with_adhesion(double work) {
   p.time_step = 5e-6;
   p.sub_steps = 20;
   p.skin = 1e-3;
+  p.initial_overlap = 1e-3;
   return p;
 }
 
