@@ -9,22 +9,25 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cstring>
+#include <span>
 #include <type_traits>
 
 namespace thalweg::coupling {
 
 namespace {
 
-// Structs of 64-bit sums, added up over all ranks.
+// The 64-bit sums that structs consist of.
+template <typename Sums>
+std::span<std::int64_t> words_of(std::vector<Sums>& sums) {
+  static_assert(std::is_standard_layout_v<Sums> && sizeof(Sums) % sizeof(std::int64_t) == 0);
+  return {reinterpret_cast<std::int64_t*>(sums.data()), sums.size() * sizeof(Sums) / sizeof(std::int64_t)};
+}
+
 template <typename Sums>
 std::vector<Sums> over_ranks(MPI_Comm communicator, std::vector<Sums> sums) {
-  static_assert(std::is_trivially_copyable_v<Sums> && sizeof(Sums) % sizeof(std::int64_t) == 0);
-  std::vector<std::int64_t> words(sums.size() * sizeof(Sums) / sizeof(std::int64_t));
-  std::memcpy(words.data(), sums.data(), sizeof(Sums) * sums.size());
+  const std::span<std::int64_t> words = words_of(sums);
   const std::vector<WideSum> totals = wide_sums_over_ranks(communicator, words);
   std::transform(totals.begin(), totals.end(), words.begin(), [](const WideSum& total) { return total.narrowed(); });
-  std::memcpy(static_cast<void*>(sums.data()), words.data(), sizeof(Sums) * sums.size());
   return sums;
 }
 
@@ -86,23 +89,22 @@ double SolidBodies<Real>::mass_owed() const {
 }
 
 template <typename Real>
-std::vector<typename SolidBodies<Real>::LoadSums> SolidBodies<Real>::sums() const {
-  if (!loaded_.empty()) return loaded_;
-  std::vector<LoadSums> sums;
+typename SolidBodies<Real>::LoadSums SolidBodies<Real>::sums() const {
+  if (!loaded_.forces.empty()) return loaded_;
+  LoadSums sums;
   for (int s = 0; s < bodies_.solids(); ++s) {
-    const bodies::LinkBody& body = bodies_.body(bodies::slot_of_solid(s));
-    sums.push_back({body.force, body.torque});
+    sums.forces.push_back(bodies_.body(bodies::slot_of_solid(s)).force);
+    sums.torques.push_back(bodies_.body(bodies::slot_of_solid(s)).torque);
   }
-  return over_ranks(communicator_, std::move(sums));
+  return {over_ranks(communicator_, std::move(sums.forces)), over_ranks(communicator_, std::move(sums.torques))};
 }
 
 template <typename Real>
 typename SolidBodies<Real>::Loads SolidBodies<Real>::loads() const {
+  const LoadSums all = sums();
   Loads loads;
-  for (const LoadSums& sum : sums()) {
-    loads.forces.push_back(sum.force.to_vec3());
-    loads.torques.push_back(sum.torque.to_vec3());
-  }
+  for (const FixedVec3& force : all.forces) loads.forces.push_back(force.to_vec3());
+  for (const FixedVec3& torque : all.torques) loads.torques.push_back(torque.to_vec3());
   return loads;
 }
 
@@ -122,15 +124,11 @@ std::vector<Diagnostic> SolidBodies<Real>::diagnostics() const {
 
 template <typename Real>
 void SolidBodies<Real>::save(ArchiveWriter& archive) const {
-  const std::vector<LoadSums> all = sums();
-  const auto write = [&](const char* path, FixedVec3 LoadSums::*part) {
-    std::vector<std::int64_t> values;
-    for (const LoadSums& sum : all) values.insert(values.end(), {(sum.*part).x, (sum.*part).y, (sum.*part).z});
-    write_whole<std::int64_t>(archive, communicator_, path, values, {all.size(), 3});
-  };
-  write("solids/force", &LoadSums::force);
+  LoadSums all = sums();
+  const std::vector<std::uint64_t> shape{all.forces.size(), 3};
+  write_whole<std::int64_t>(archive, communicator_, "solids/force", words_of(all.forces), shape);
   if (!any_moves()) return;
-  write("solids/torque", &LoadSums::torque);
+  write_whole<std::int64_t>(archive, communicator_, "solids/torque", words_of(all.torques), shape);
   save_debts(archive);
 }
 
@@ -149,15 +147,11 @@ void SolidBodies<Real>::load(ArchiveReader& archive) {
         fmt::format("The checkpoint does not hold {} solids that move as this case does; keep their "
                     "motions.",
                     moving_.size()));
-  loaded_.assign(solids, {});
-  const auto read = [&](const char* path, FixedVec3 LoadSums::*part) {
-    std::vector<std::int64_t> values(3 * solids);
-    archive.read(path, std::span<std::int64_t>(values), {shape, {0, 0}, shape});
-    for (std::size_t s = 0; s < solids; ++s) loaded_[s].*part = {values[3 * s], values[3 * s + 1], values[3 * s + 2]};
-  };
-  read("solids/force", &LoadSums::force);
+  loaded_.forces.resize(solids);
+  loaded_.torques.resize(solids);
+  archive.read("solids/force", words_of(loaded_.forces), {shape, {0, 0}, shape});
   if (!any_moves()) return;
-  read("solids/torque", &LoadSums::torque);
+  archive.read("solids/torque", words_of(loaded_.torques), {shape, {0, 0}, shape});
   load_debts(archive);
 }
 

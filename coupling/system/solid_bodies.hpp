@@ -43,7 +43,7 @@ public:
   // Until forget_loaded(), the loads are those of the checkpoint. Throws InputError where the archive does not hold as
   // many solids, or as many that move.
   void load(ArchiveReader& archive);
-  void forget_loaded() { loaded_.clear(); }
+  void forget_loaded() { loaded_ = {}; }
 
 private:
   struct Moving {
@@ -54,14 +54,14 @@ private:
     bodies::MassReturn returned;
   };
 
-  // Sums of the last step over the links of a solid.
+  // Sums over the links of every solid.
   struct LoadSums {
-    FixedVec3 force, torque;
+    std::vector<FixedVec3> forces, torques;
   };
 
   static constexpr std::uint64_t debt_width = 7;  // numbers that a checkpoint keeps of each that moves
 
-  std::vector<LoadSums> sums() const;  // of every solid, over all ranks
+  LoadSums sums() const;  // of the last step, over all ranks
   void save_debts(ArchiveWriter& archive) const;
   void load_debts(ArchiveReader& archive);
 
@@ -69,7 +69,7 @@ private:
   bodies::Bodies<Real>& bodies_;
   Units units_;
   std::vector<Moving> moving_;
-  std::vector<LoadSums> loaded_;  // of the checkpoint; empty after the first step
+  LoadSums loaded_;  // of the checkpoint; empty after the first step
 };
 
 }  // namespace thalweg::coupling
