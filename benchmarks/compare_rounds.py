@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Table of the rounds of benchmarks/compare.sh: compare_rounds.py NAME COMMIT FIRST SECOND ROUNDS
 
-FIRST and SECOND are run folders without the number of the round: FIRST.0, FIRST.1, ... The fastest round of each counts.
+FIRST and SECOND are run folders without the number of the round: FIRST.0, FIRST.1, ... The fastest round of each
+counts.
 """
 import pathlib
 import subprocess

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Completion for bash and zsh, the manual page and the schema of cases, made from what the program prints: help_files.py THALWEG FOLDER
+"""Completion for bash and zsh, the manual page and the schema of cases, made from what the program prints:
+help_files.py THALWEG FOLDER
 
 Writes thalweg.bash, _thalweg and thalweg.1 into the folder.
 """
@@ -12,17 +13,23 @@ from pathlib import Path
 OPTION = re.compile(r"^ {2}(-[^\s,]+(?:, ?-[^\s,]+)*)((?: (?!Excludes:)\S+)*)(?: Excludes:[^\n]*?)?(?: {2,}(.*))?$")
 COMMAND = re.compile(r"^ {2,4}([a-z]\w*)(?: {2,}(.*))?$")
 POSITIONAL = re.compile(r"^ {2}([A-Z]\S*)(?: TEXT)?(?: REQUIRED)?(?: \.\.\.)?(?: {2,}(.*))?$")
-LISTS = {"Subcommands:": "commands", "kinds:": "commands", "Options:": "options", "options:": "options", "Positionals:": "positionals",
-         "positional arguments:": "positionals"}
+LISTS = {
+    "Subcommands:": "commands", "kinds:": "commands", "Options:": "options", "options:": "options",
+    "Positionals:": "positionals", "positional arguments:": "positionals",
+}
 PATTERNS = {"commands": COMMAND, "options": OPTION, "positionals": POSITIONAL}
 
 
 class Help:
-    """What `thalweg PATH --help` says; path: words of a command. Lists of [words, value, text]; footer: what follows them."""
+    """What `thalweg PATH --help` says; path: words of a command. Lists of [words, value, text]; footer: what follows
+    them."""
 
     def __init__(self, program, path):
         self.path, self.commands, self.options, self.positionals, self.summary = path, [], [], [], ""
-        said = subprocess.run([program, *path, "--help"], capture_output=True, check=True, encoding="utf-8", env=os.environ | {"COLUMNS": "999"})
+        said = subprocess.run(
+            [program, *path, "--help"], capture_output=True, check=True, encoding="utf-8",
+            env=os.environ | {"COLUMNS": "999"},
+        )
         head, _, self.footer = said.stdout.partition("\nExamples:\n")
         current = None
         for line in head.splitlines():
@@ -37,7 +44,9 @@ class Help:
         entries = getattr(self, kind)
         match = PATTERNS[kind].match(line)
         if kind == "options" and match:
-            entries.append([re.split(r", ?", match[1]), (match[2] or "").strip().partition(":value in")[0], match[3] or ""])
+            entries.append(
+                [re.split(r", ?", match[1]), (match[2] or "").strip().partition(":value in")[0], match[3] or ""]
+            )
         elif match and match[1] != "KIND":
             entries.append([match[1], "", match[2] or ""])
         elif entries and line.startswith(" " * 8):
@@ -52,16 +61,24 @@ class Help:
 
 
 def bash_completion(root):
-    lines = ["# Completion of thalweg for bash; made from its help.", "_thalweg() {", "  local current=${COMP_WORDS[COMP_CWORD]} path= word",
-             "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do", "    case \"$path/$word\" in"]
+    lines = [
+        "# Completion of thalweg for bash; made from its help.",
+        "_thalweg() {", "  local current=${COMP_WORDS[COMP_CWORD]} path= word",
+        "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do", "    case \"$path/$word\" in",
+    ]
     lines += [f"      /{'/'.join(found.path)}) path=/{'/'.join(found.path)} ;;" for found in root.all() if found.path]
     lines += ["    esac", "  done", "  local options= commands=", "  case $path in"]
     for found in root.all():
         place = f"/{'/'.join(found.path)}" if found.path else "''"
-        lines.append(f"    {place}) options='{' '.join(found.words)}' commands='{' '.join(command[0] for command in found.commands)}' ;;")
-    lines += ["  esac", "  if [[ $current == -* ]]; then", "    COMPREPLY=($(compgen -W \"$options\" -- \"$current\"))",
-              "  elif [[ -n $commands ]]; then", "    COMPREPLY=($(compgen -W \"$commands\" -- \"$current\"))", "  else",
-              "    COMPREPLY=($(compgen -f -- \"$current\"))", "  fi", "}", "complete -o filenames -F _thalweg thalweg", ""]
+        lines.append(
+            f"    {place}) options='{' '.join(found.words)}'"
+            f" commands='{' '.join(command[0] for command in found.commands)}' ;;"
+        )
+    lines += [
+        "  esac", "  if [[ $current == -* ]]; then", "    COMPREPLY=($(compgen -W \"$options\" -- \"$current\"))",
+        "  elif [[ -n $commands ]]; then", "    COMPREPLY=($(compgen -W \"$commands\" -- \"$current\"))", "  else",
+        "    COMPREPLY=($(compgen -f -- \"$current\"))", "  fi", "}", "complete -o filenames -F _thalweg thalweg", "",
+    ]
     return "\n".join(lines)
 
 
@@ -80,19 +97,32 @@ def zsh_function(found):
         return "\n".join([*lines, f"  _arguments {' '.join(specs)} '*:file:_files'", "}"])
     described = " ".join(f"'{command[0]}:{zsh_text(command[2])}'" for command in found.commands)
     cases = [f"        {below.path[-1]}) {'_'.join(['_thalweg', *below.path])} ;;" for below in found.below]
-    return "\n".join([*lines, "  local line state", f"  _arguments -C {' '.join(specs)} '1:command:->command' '*::argument:->argument'",
-                      "  case $state in", f"    command) local -a known=({described}); _describe command known ;;", "    argument)",
-                      "      case $line[1] in", *cases, "      esac ;;", "  esac", "}"])
+    return "\n".join(
+        [
+            *lines, "  local line state",
+            f"  _arguments -C {' '.join(specs)} '1:command:->command' '*::argument:->argument'", "  case $state in",
+            f"    command) local -a known=({described}); _describe command known ;;", "    argument)",
+            "      case $line[1] in", *cases, "      esac ;;", "  esac", "}",
+        ]
+    )
 
 
 def zsh_completion(root):
-    return "\n".join(["#compdef thalweg", "# Completion of thalweg for zsh; made from its help.", *(zsh_function(found) for found in root.all()),
-                      '_thalweg "$@"', ""])
+    return "\n".join(
+        [
+            "#compdef thalweg",
+            "# Completion of thalweg for zsh; made from its help.",
+            *(zsh_function(found) for found in root.all()), '_thalweg "$@"', "",
+        ]
+    )
 
 
 def roff(text):
     """Text that means itself in a manual page."""
-    return "\n".join(f"\\&{line}" if line.startswith((".", "'")) else line for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+    return "\n".join(
+        f"\\&{line}" if line.startswith((".", "'")) else line
+        for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines()
+    )
 
 
 def manual_of(found):
@@ -108,9 +138,12 @@ def manual_of(found):
 def manual(root, version):
     title, _, summary = root.summary.partition(": ")
     examples, _, codes = root.footer.partition("\n\n")
-    parts = [f'.TH THALWEG 1 "" "{roff(version)}"', ".nh", ".ad l", ".SH NAME", f"{roff(title.lower())} \\- {roff(summary)}", ".SH SYNOPSIS",
-             "\\fBthalweg\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]", ".SH COMMANDS", *(manual_of(found) for found in root.all() if found.path),
-             ".SH EXAMPLES", ".nf", roff(examples), ".fi", ".SH EXIT STATUS", roff(codes.removeprefix("Exit codes: "))]
+    parts = [
+        f'.TH THALWEG 1 "" "{roff(version)}"', ".nh", ".ad l", ".SH NAME", f"{roff(title.lower())} \\- {roff(summary)}",
+        ".SH SYNOPSIS", "\\fBthalweg\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]", ".SH COMMANDS",
+        *(manual_of(found) for found in root.all() if found.path), ".SH EXAMPLES", ".nf", roff(examples), ".fi",
+        ".SH EXIT STATUS", roff(codes.removeprefix("Exit codes: ")),
+    ]
     return "\n".join(parts) + "\n"
 
 
@@ -120,8 +153,10 @@ def main():
     version = subprocess.run([program, "--version"], capture_output=True, check=True, encoding="utf-8").stdout.strip()
     folder.mkdir(parents=True, exist_ok=True)
     schema = subprocess.run([program, "defaults", "--schema"], capture_output=True, check=True, encoding="utf-8").stdout
-    for name, text in (("thalweg.bash", bash_completion(root)), ("_thalweg", zsh_completion(root)), ("thalweg.1", manual(root, version)),
-                       ("thalweg.schema.json", schema)):
+    for name, text in (
+        ("thalweg.bash", bash_completion(root)), ("_thalweg", zsh_completion(root)),
+        ("thalweg.1", manual(root, version)), ("thalweg.schema.json", schema),
+    ):
         (folder / name).write_text(text, encoding="utf-8")
 
 

@@ -1,8 +1,9 @@
-"""Scripts import this first: it goes on in another Python where the one that was started lacks what they need, and prints the head
-of a script that has no options when it is asked for help.
+"""Scripts import this first: it goes on in another Python where the one that was started lacks what they need, and
+prints the head of a script that has no options when it is asked for help.
 
-The other Python is the interpreter named in the environment variable THALWEG_PYTHON, or Debian's own, whose packages scripts/setup installs; on
-the path there is often a first Python without them. Where there is none with them, it says what is missing.
+The other Python is the interpreter named in the environment variable THALWEG_PYTHON, or Debian's own, whose packages
+scripts/setup installs; on the path there is often a first Python without them. Where there is none with them, it says
+what is missing.
 """
 import importlib.util
 import os
@@ -22,8 +23,10 @@ def go_on_elsewhere(missing):
         if other not in tried and os.access(other, os.X_OK):
             os.environ[TRIED] = os.pathsep.join(tried + [other])
             os.execv(other, [other, *sys.orig_argv[1:]])
-    sys.exit(f"{os.path.basename(sys.argv[0])}: {sys.executable} lacks {', '.join(missing)}; install it, or set THALWEG_PYTHON to an "
-             "interpreter that has it.")
+    sys.exit(
+        f"{os.path.basename(sys.argv[0])}: {sys.executable} lacks {', '.join(missing)}; install it, or set"
+        " THALWEG_PYTHON to an interpreter that has it."
+    )
 
 
 if "argparse" not in sys.modules and {"-h", "--help"} & set(sys.argv[1:]):

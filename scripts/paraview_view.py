@@ -3,9 +3,9 @@
 
     pvpython scripts/paraview_view.py RUN_FOLDER [--state FILE] [--out FILE] [--time SECONDS] [--size WIDTH HEIGHT]
 
-The state (RUN_FOLDER/view.pvsm) is what File > Load State opens in ParaView, with all times of the run to step through. It is
-made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView, thalweg plot picture
-draws a similar picture.
+The state (RUN_FOLDER/view.pvsm) is what File > Load State opens in ParaView, with all times of the run to step through.
+It is made for ParaView 5.11 or later. Where there is no screen: xvfb-run -a -s -noreset pvpython ... Without ParaView,
+thalweg plot picture draws a similar picture.
 """
 import argparse
 import os
@@ -98,16 +98,24 @@ def look_from_the_side(view):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run_folder", type=Path)
-    parser.add_argument("--state", type=Path, metavar="FILE", help="state for ParaView (default: view.pvsm in the run folder)")
+    parser.add_argument(
+        "--state", type=Path, metavar="FILE", help="state for ParaView (default: view.pvsm in the run folder)"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="picture (default: paraview.png in the run folder)")
-    parser.add_argument("--time", type=float, help="simulated time in s of the picture (default: the last that is stored)")
+    parser.add_argument(
+        "--time", type=float, help="simulated time in s of the picture (default: the last that is stored)"
+    )
     parser.add_argument("--size", type=int, nargs=2, default=(1280, 720), metavar=("WIDTH", "HEIGHT"), help="pixels")
     arguments = parser.parse_args()
     folder = arguments.run_folder
     grains, fluid, solids = series(folder, "grains"), series(folder, "fluid"), series(folder, "solids")
     if not grains and not fluid:
-        print(f"paraview_view: {folder} has neither grains.pvd nor fluid.pvd (output.grains and output.fluid of the case).",
-              file=sys.stderr)
+        print(
+            (
+                f"paraview_view: {folder} has neither grains.pvd nor fluid.pvd (output.grains and output.fluid of the"
+                " case)."
+            ), file=sys.stderr,
+        )
         return 1
     view = simple.GetActiveViewOrCreate("RenderView")
     view.ViewSize = list(arguments.size)

@@ -2,9 +2,9 @@
 """Growth rates of small disturbances on the lattice: linear_stability.py
 
 Two flows: plane Couette flow between half-link walls eight cells apart, the upper moving at 0.1 cells per step, and a
-uniform stream at the same velocity without walls. The step (collision, streaming, bounce-back) is linearised about the flow;
-the largest eigenvalue over all wave numbers, minus one, is the growth per step (positive: unstable). The matrices are written
-out from the definitions of the collisions, independently of the library.
+uniform stream at the same velocity without walls. The step (collision, streaming, bounce-back) is linearised about the
+flow; the largest eigenvalue over all wave numbers, minus one, is the growth per step (positive: unstable). The matrices
+are written out from the definitions of the collisions, independently of the library.
 """
 import sys
 from pathlib import Path
@@ -106,9 +106,17 @@ def main():
 
     times = (None, 1, 1.5, 2, 3, 10)
     print("\nUniform stream, bgk: the largest velocity in steps of 0.02 that is stable, up to 0.16\n")
-    print("| tau - 1/2 | bulk as the shear | " + " | ".join(f"{t:g}" for t in times[1:]) + " |\n" + "|---" * (len(times) + 1) + "|")
+    print(
+        "| tau - 1/2 | bulk as the shear | "
+        + " | ".join(f"{t:g}" for t in times[1:])
+        + " |\n"
+        + "|---" * (len(times) + 1)
+        + "|"
+    )
     for excess in (0.01, 0.003, 0.001):
-        print(f"| {excess:g} | " + " | ".join(f"{largest_stable_stream(excess, t):.2f}" for t in times) + " |", flush=True)
+        print(
+            f"| {excess:g} | " + " | ".join(f"{largest_stable_stream(excess, t):.2f}" for t in times) + " |", flush=True
+        )
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares the discharge of the hopper with Beverloo's law: check.py [RUN] [--orifice DIAMETER] [--figure FILE]
 
-RUN: default run/hopper. Beverloo, Leniger and van de Velde (1961): W = C rho_b sqrt(g) (D - k d)^(5/2), C = 0.58, with k = 1.4 of
-smooth spheres and rho_b the bulk density of the flowing grains above the orifice. Prints the rate while the bin empties steadily, that of
-the law and pass or fail (10 %). Exit code 0 if it passes.
+RUN: default run/hopper. Beverloo, Leniger and van de Velde (1961): W = C rho_b sqrt(g) (D - k d)^(5/2), C = 0.58, with
+k = 1.4 of smooth spheres and rho_b the bulk density of the flowing grains above the orifice. Prints the rate while the
+bin empties steadily, that of the law and pass or fail (10 %). Exit code 0 if it passes.
 """
 import argparse
 import sys
@@ -54,11 +54,16 @@ def main():
     bulk = solid_fraction * grains["density"]
     law = 0.58 * bulk * np.sqrt(run.case["gravity"]["magnitude"]) * (arguments.orifice - 1.4 * diameter) ** 2.5
     good = abs(rate / law - 1.0) <= ACCEPTED
-    print(f"{rate * 1e3:.1f} g/s from {times[steady][0]:.2f} to {times[steady][-1]:.2f} s, solid fraction {solid_fraction:.3f}; "
-          f"Beverloo's law {law * 1e3:.1f} g/s, difference {100 * (rate / law - 1):+.1f} %: {'pass' if good else 'FAIL'}")
+    print(
+        f"{rate * 1e3:.1f} g/s from {times[steady][0]:.2f} to {times[steady][-1]:.2f} s, solid fraction"
+        f" {solid_fraction:.3f}; Beverloo's law {law * 1e3:.1f} g/s, difference {100 * (rate / law - 1):+.1f} %:"
+        f" {'pass' if good else 'FAIL'}"
+    )
     plt.figure(figsize=(5.6, 3.4), layout="constrained")
     plt.plot(times, 1e3 * gone, label="run")
-    plt.plot(times, 1e3 * (start + law * (times - times[0]) + (rate - law) * times[steady][0]), "k--", label="Beverloo's law")
+    plt.plot(
+        times, 1e3 * (start + law * (times - times[0]) + (rate - law) * times[steady][0]), "k--", label="Beverloo's law"
+    )
     plt.ylim(0, 1e3 * whole)
     plt.xlabel("time [s]")
     plt.ylabel("grains that have left [g]")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes the surfaces of the hopper: hopper.py [--orifice DIAMETER] [--facets N]
 
-hopper.stl is a cylindrical bin with a flat bottom and a round orifice in its middle, plug.stl a disk that closes it. In metres.
+hopper.stl is a cylindrical bin with a flat bottom and a round orifice in its middle, plug.stl a disk that closes it. In
+metres.
 """
 import argparse
 import math
@@ -13,11 +14,16 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 import thalweg_python
 from thalweg.stl import write_stl
 
-BIN, WALL, BOTTOM, TOP = 0.050, 0.003, 0.060, 0.295   # m: inner diameter, thickness, heights of the bottom's upper side and the rim
+BIN, WALL, BOTTOM, TOP = (
+    0.050, 0.003, 0.060, 0.295,
+)  # m: inner diameter, thickness, heights of the bottom's upper side and the rim
 
 
 def ring(radius, height, facets):
-    return [(radius * math.cos(2 * math.pi * k / facets), radius * math.sin(2 * math.pi * k / facets), height) for k in range(facets)]
+    return [
+        (radius * math.cos(2 * math.pi * k / facets), radius * math.sin(2 * math.pi * k / facets), height)
+        for k in range(facets)
+    ]
 
 
 def turned(rings):
@@ -45,8 +51,15 @@ def main():
     parser.add_argument("--facets", type=int, default=36, help="to the turn (default: 36)")
     arguments = parser.parse_args()
     n, hole, inner, outer = arguments.facets, 0.5 * arguments.orifice, 0.5 * BIN, 0.5 * BIN + WALL
-    write_stl(HERE / "hopper.stl", turned([ring(hole + WALL, BOTTOM - WALL, n), ring(hole, BOTTOM, n), ring(inner, BOTTOM, n), ring(inner, TOP, n),
-                                ring(outer, TOP, n), ring(outer, BOTTOM - WALL, n)]))
+    write_stl(
+        HERE / "hopper.stl",
+        turned(
+            [
+                ring(hole + WALL, BOTTOM - WALL, n), ring(hole, BOTTOM, n), ring(inner, BOTTOM, n), ring(inner, TOP, n),
+                ring(outer, TOP, n), ring(outer, BOTTOM - WALL, n),
+            ]
+        ),
+    )
     write_stl(HERE / "plug.stl", disk(hole + 0.5 * WALL, BOTTOM - 2 * WALL, BOTTOM - WALL, n))
 
 

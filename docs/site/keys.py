@@ -1,4 +1,5 @@
-"""The page "Keys of a case", from what `thalweg defaults SYSTEM` prints: each key once, with the systems that have it."""
+"""The page "Keys of a case", from what `thalweg defaults SYSTEM` prints: each key once, with the systems that have
+it."""
 import re
 from dataclasses import dataclass, field
 
@@ -14,9 +15,9 @@ CONTINUED = re.compile(r"\n {44}#   ")   # a comment that takes more than one li
 ONLY_WITH = re.compile(r"; only with ([^;]*)$")
 INTRODUCTION = """# Keys of a case
 
-Every key of a case file with its default, unit, range and meaning, as `thalweg defaults` prints them for each `system`. An
-*example* is a plausible value of a key that has no default. A key is *required* wherever its section is given. `[]` stands for the
-entries of a list: `grains[].count` is `grains.0.count` for `--set`. The unit 1 means none.
+Every key of a case file with its default, unit, range and meaning, as `thalweg defaults` prints them for each `system`.
+An *example* is a plausible value of a key that has no default. A key is *required* wherever its section is given. `[]`
+stands for the entries of a list: `grains[].count` is `grains.0.count` for `--set`. The unit 1 means none.
 [The case file](../docs/input.md) explains the concepts.
 
 """
@@ -41,7 +42,10 @@ class Key:
     @property
     def shown(self):
         """What tells it from the same key of another system; of examples one is enough."""
-        return (self.value if self.has_default else "", self.kind, self.meaning, self.only_with, self.required, self.optional)
+        return (
+            self.value if self.has_default else "", self.kind, self.meaning, self.only_with, self.required,
+            self.optional,
+        )
 
 
 @dataclass
@@ -104,7 +108,8 @@ def read_keys(text):
 
 
 def merged(keys_by_system):
-    """The keys of all systems as entries, those of one section together, in the order of the first system that has them."""
+    """The keys of all systems as entries, those of one section together, in the order of the first system that has
+    them."""
     entries = {}
     for system, keys in keys_by_system.items():
         before = None

@@ -1,4 +1,5 @@
-"""Links and headings of a Markdown text as GitHub reads it: shared by the check of links and the site of the documentation."""
+"""Links and headings of a Markdown text as GitHub reads it: shared by the check of links and the site of the
+documentation."""
 import re
 from collections import Counter
 from dataclasses import dataclass

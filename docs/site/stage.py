@@ -3,9 +3,9 @@
 
     stage.py FOLDER THALWEG      into this folder, with the keys that this program prints
 
-The Markdown files of the repository keep their places, so that links between them still hold. Only what GitHub and mkdocs read
-differently is adapted in the copy: links to folders, links to files that the site does not have, anchors and lists. The
-navigation is that of docs/site/mkdocs.yml, where an entry FOLDER/* stands for all pages in this folder.
+The Markdown files of the repository keep their places, so that links between them still hold. Only what GitHub and
+mkdocs read differently is adapted in the copy: links to folders, links to files that the site does not have, anchors
+and lists. The navigation is that of docs/site/mkdocs.yml, where an entry FOLDER/* stands for all pages in this folder.
 """
 import json
 import re

@@ -1,4 +1,5 @@
-"""The commands of Thalweg that are written in Python: `thalweg analyze RUN` is `python -m thalweg analyze RUN`, and so on."""
+"""The commands of Thalweg that are written in Python: `thalweg analyze RUN` is `python -m thalweg analyze RUN`, and so
+on."""
 import argparse
 import sys
 from pathlib import Path
@@ -11,14 +12,18 @@ try:
     from thalweg.report import report_of
     from thalweg.run import Run
 except ModuleNotFoundError as missing:
-    sys.exit(f"thalweg: {sys.executable} has no module {missing.name}; install it (python3-numpy, python3-h5py, python3-yaml "
-             "on Debian), or set THALWEG_PYTHON to an interpreter that has it.")
+    sys.exit(
+        f"thalweg: {sys.executable} has no module {missing.name}; install it (python3-numpy, python3-h5py, python3-yaml"
+        " on Debian), or set THALWEG_PYTHON to an interpreter that has it."
+    )
 
 
 def add_analyze_to(commands):
     parser = commands.add_parser(
-        "analyze", description="Transport, surface, Shields number and profiles of a run between two times, from what it "
-                               "has stored. A run that is still going can be looked at, too.")
+        "analyze",
+        description="Transport, surface, Shields number and profiles of a run between two times, from what it "
+        "has stored. A run that is still going can be looked at, too.",
+    )
     parser.add_argument("run", type=Path, metavar="RUN", help="Run folder")
     parser.add_argument("--from", dest="start", type=float, metavar="SECONDS",
                         help="Begin of the averages (default: analysis.transport_rate.from, or half of the run)")

@@ -9,8 +9,8 @@ from thalweg.side_view import static_surface
 
 
 def surface_by_solid_fraction(z, fraction):
-    """Height (m) at which the solid fraction falls to half of the bed's, between the middles z (m) of two layers. The bed's
-    is the median of the layers below the grains' centre of mass."""
+    """Height (m) at which the solid fraction falls to half of the bed's, between the middles z (m) of two layers. The
+    bed's is the median of the layers below the grains' centre of mass."""
     z, fraction = np.asarray(z, float), np.asarray(fraction, float)
     if not np.nansum(fraction) > 0.0:
         raise RunFolderError("these profiles hold no grains; nothing has been measured yet.")
@@ -67,19 +67,22 @@ def slope_of(shields, depth, diameter, density_ratio, width=None, side_walls=2):
 def measured_shields_number(run, start, stop):
     """Mean between two times (s) of the Shields number that `analysis.bed_surface` wrote into series.csv."""
     if "shields_number" not in run.series:
-        raise RunFolderError(f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
-                             "add analysis.bed_surface to the case.")
+        raise RunFolderError(
+            f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
+            "add analysis.bed_surface to the case."
+        )
     return mean_between(run, "shields_number", start, stop)
 
 
 def mean_between(run, column, start, stop):
-    """Mean of a column of series.csv between two times (s). Rows that have no number, because nothing could be measured, do not
-    count; RunFolderError where none has."""
+    """Mean of a column of series.csv between two times (s). Rows that have no number, because nothing could be
+    measured, do not count; RunFolderError where none has."""
     values = run.series[column][rows_between(run, start, stop)]
     values = values[np.isfinite(values)]
     if not len(values):
-        raise RunFolderError(f"{run.folder / 'series.csv'}: no row from {start:g} to {stop:g} s has a number in the column "
-                             f"{column}.")
+        raise RunFolderError(
+            f"{run.folder / 'series.csv'}: no row from {start:g} to {stop:g} s has a number in the column " f"{column}."
+        )
     return float(np.mean(values))
 
 
@@ -91,29 +94,36 @@ def rows_between(run, start, stop):
 
 
 def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
-    """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and slope,
-    or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured for the surface by
-    solid fraction, and for another one as much more as its hydraulic radius is larger. RunFolderError where that cannot be
-    said, because the top drags on the flow as well."""
+    """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and
+    slope, or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured for
+    the surface by solid fraction, and for another one as much more as its hydraulic radius is larger. RunFolderError
+    where that cannot be said, because the top drags on the flow as well."""
     if run.driven_by_slope:
-        return shields_of(run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls)
+        return shields_of(
+            run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
+        )
     measured = measured_shields_number(run, start, stop)
     if by_solid_fraction:
         return measured
     if run.faces("z")[1] in DRAGGING:
-        raise RunFolderError(f"{run.folder}: the top of the box drags on the flow, and the stress was measured for the surface by "
-                             "solid fraction.")
+        raise RunFolderError(
+            f"{run.folder}: the top of the box drags on the flow, and the stress was measured for the surface by "
+            "solid fraction."
+        )
     radius = mean_between(run, "hydraulic_radius", start, stop)
     return measured * hydraulic_radius(run.size[2] - surface, run.size[1], run.side_walls) / radius
 
 
 def transport_rate(run, start=None, stop=np.inf, column="q_star"):
-    """Times (s), at equal intervals, and q* of a run between two times (s); from the begin of its means on if no start is given.
+    """Times (s), at equal intervals, and q* of a run between two times (s); from the begin of its means on if no start
+    is given.
 
     column: q_s for the flux in m^2/s, which grains without a fluid have as well. RunFolderError where there is none.
     """
     if column not in run.series:
-        raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column {column} (analysis.transport_rate in the case).")
+        raise RunFolderError(
+            f"{run.folder / 'series.csv'}: it has no column {column} (analysis.transport_rate in the case)."
+        )
     if start is None:
         start = run.averaged_from("transport_rate")
     rows = rows_between(run, start, stop)

@@ -1,7 +1,8 @@
 """Case files and sweeps as the solver reads them: io/text/yaml_document.hpp and io/text/section_reader.hpp.
 
-Words are numbers where they are decimal, as in YAML 1.2: 010 is ten and 1e-3 a number; 1:30, 0x10, 1_000, no and 2026-01-01 are
-texts, which YAML 1.1 takes for other things. Tags (!!int) and merge keys (<<) mean nothing, and a key given twice is an error.
+Words are numbers where they are decimal, as in YAML 1.2: 010 is ten and 1e-3 a number; 1:30, 0x10, 1_000, no and
+2026-01-01 are texts, which YAML 1.1 takes for other things. Tags (!!int) and merge keys (<<) mean nothing, and a key
+given twice is an error.
 """
 import json
 import math
@@ -35,7 +36,9 @@ class CaseLoader(yaml.SafeLoader):
         known = {}
         for key, _ in node.value:
             if key.value in known and isinstance(key, yaml.ScalarNode):
-                raise yaml.constructor.ConstructorError(None, None, f"the key {key.value} is given twice", key.start_mark)
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key {key.value} is given twice", key.start_mark
+                )
             if isinstance(key, yaml.ScalarNode):
                 known[key.value] = key
         return super().construct_mapping(node, deep)

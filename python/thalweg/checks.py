@@ -30,10 +30,13 @@ class Checks:
 
 
 def check_main(description, check, folders, figure=False):
-    """The main function of a check script: calls check(checks, *folders, figure) with the folders from the command line or
-    those that the tutorial's README uses, and returns the exit code, 0 if nothing failed. figure: whether it can draw one."""
+    """The main function of a check script: calls check(checks, *folders, figure) with the folders from the command line
+    or those that the tutorial's README uses, and returns the exit code, 0 if nothing failed. figure: whether it can
+    draw one."""
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER", help="of the runs; default: " + " ".join(folders))
+    parser.add_argument(
+        "folders", nargs="*", type=Path, metavar="FOLDER", help="of the runs; default: " + " ".join(folders)
+    )
     if figure:
         parser.add_argument("--figure", type=Path, metavar="FILE", help="draw the result")
     arguments = parser.parse_args()

@@ -5,10 +5,11 @@ from thalweg.tables import merged_rows, read_rows
 
 
 def compared_rows(description, table, figure, rows_of):
-    """Rows of the table and the name of the figure of a comparison, from the command line [RUN...] [--table FILE] [--figure FILE].
+    """Rows of the table and the name of the figure of a comparison, from the command line [RUN...] [--table FILE]
+    [--figure FILE].
 
-    rows_of: from a run's folder to its list of rows (dictionaries by heading). Rows of the runs given replace their earlier
-    ones in the table; without runs it is read as it is. table, figure: the defaults.
+    rows_of: from a run's folder to its list of rows (dictionaries by heading). Rows of the runs given replace their
+    earlier ones in the table; without runs it is read as it is. table, figure: the defaults.
     """
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="*", metavar="RUN")

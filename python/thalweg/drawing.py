@@ -19,8 +19,8 @@ def colour_of(number):
 
 
 def fluid_slice(frame):
-    """Speed (m/s; masked inside grains and solids) in the middle layer across y as [z, x], its extent in m, and which of its
-    cells are solids'; None if the frame is not one of the velocity in the x-z plane."""
+    """Speed (m/s; masked inside grains and solids) in the middle layer across y as [z, x], its extent in m, and which
+    of its cells are solids'; None if the frame is not one of the velocity in the x-z plane."""
     cells = frame.arrays
     if "velocity" not in cells or 1 in (cells["velocity"].shape[0], cells["velocity"].shape[2]):
         return None
@@ -147,7 +147,8 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
 
 
 def flow_figure(run, fluid, largest_flow=None):
-    """A figure of the fluid's speed in the middle plane. largest_flow: end of the scale in m/s, of this frame if None."""
+    """A figure of the fluid's speed in the middle plane. largest_flow: end of the scale in m/s, of this frame if
+    None."""
     layer = fluid_slice(fluid) if fluid else None
     if layer is None:
         raise RunFolderError(f"{run.folder}: no frame of the velocity yet (output.fluid in the case).")

@@ -11,7 +11,8 @@ from thalweg.errors import RunFolderError
 
 
 def chosen_frames(run, start=-np.inf, stop=np.inf, every=0.0):
-    """The frames between two times (s), at least `every` seconds apart: of the grains, or of the fluid where there are none."""
+    """The frames between two times (s), at least `every` seconds apart: of the grains, or of the fluid where there are
+    none."""
     shown, kind = (run.grains, "grains") if len(run.grains) else (run.fluid, "fluid")
     frames, found, due = shown.between(start, stop), [], -np.inf
     for k, time in enumerate(frames.times):
@@ -77,8 +78,8 @@ def write_mp4(pictures, path, rate):
 
 
 def write_film(run, frames, path, rate=20.0, width=900):
-    """A film of the frames, `rate` of them a second, `width` pixels wide: an .mp4, which takes ffmpeg, a .gif, or else a folder
-    of images."""
+    """A film of the frames, `rate` of them a second, `width` pixels wide: an .mp4, which takes ffmpeg, a .gif, or else
+    a folder of images."""
     path = Path(path)
     if path.suffix == ".mp4" and not shutil.which("ffmpeg"):
         raise RunFolderError(f"{path}: ffmpeg is not installed; give a .gif or a folder.")

@@ -1,5 +1,5 @@
-"""Means over the height of a run, from profiles.h5 (and, for the stress of the fluid on the grains, the frames), and their
-figure, after fig. 7(a) of Zhang et al. (2022)."""
+"""Means over the height of a run, from profiles.h5 (and, for the stress of the fluid on the grains, the frames), and
+their figure, after fig. 7(a) of Zhang et al. (2022)."""
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -92,8 +92,8 @@ def stresses(run):
 
 
 def weight_of_water(run):
-    """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above. None
-    where the slope is not all that drives the flow."""
+    """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above.
+    None where the slope is not all that drives the flow."""
     if not run.driven_by_slope or not run.gravity[0] > 0.0:
         return None
     z = np.array([0.0, run.size[2]])
@@ -101,7 +101,8 @@ def weight_of_water(run):
 
 
 def style_of(label):
-    """How the line of a stress is drawn: the sums black and dashed, so that one lies visibly on the other in steady flow."""
+    """How the line of a stress is drawn: the sums black and dashed, so that one lies visibly on the other in steady
+    flow."""
     return {"total": {"color": "k", "lw": 2.2}, "driving": {"color": "#c0392b", "ls": "--", "lw": 1.5},
             "driving less side walls": {"color": "#e08e79", "ls": "--", "lw": 1.5}}.get(label, {"lw": 1.3})
 
@@ -130,7 +131,9 @@ def draw_stresses(axes, run, scaled):
         axes.plot(values, scaled(height), label=label, **style_of(label))
     water = weight_of_water(run)
     if water is not None:
-        axes.plot(water[1], scaled(water[0]), color="0.45", ls=":", lw=1.5, label=r"$\rho\, g \sin\alpha\, (z_{top} - z)$")
+        axes.plot(
+            water[1], scaled(water[0]), color="0.45", ls=":", lw=1.5, label=r"$\rho\, g \sin\alpha\, (z_{top} - z)$"
+        )
     axes.set(xlabel="shear stress [Pa]")
 
 

@@ -83,5 +83,9 @@ def settings_in(command):
         if word in ("--set", "--until"):
             found.append(following if word == "--set" else f"run.until={following}")
         elif word.startswith(("--set=", "--until=")):
-            found.append(word.removeprefix("--set=") if word.startswith("--set=") else f"run.until={word.removeprefix('--until=')}")
+            found.append(
+                word.removeprefix("--set=")
+                if word.startswith("--set=")
+                else f"run.until={word.removeprefix('--until=')}"
+            )
     return found

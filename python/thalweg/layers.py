@@ -1,7 +1,7 @@
 """Layer means of grains, from frames, with the exact volume of every sphere in every layer.
 
-The quantities are those of `analysis.grain_profiles`, which gathers them in the run and should be preferred for means over
-time; this is for frames that are there already, and for heights measured from a surface that moves.
+The quantities are those of `analysis.grain_profiles`, which gathers them in the run and should be preferred for means
+over time; this is for frames that are there already, and for heights measured from a surface that moves.
 """
 import numpy as np
 
@@ -38,8 +38,9 @@ def layer_edges(bottom, top, thickness):
 
 class LayerSums:
     """Sums over frames of what the grains contribute to layers; profiles() makes means of them. area: of a layer, m^2;
-    lengths in m; height: of a period, where z is periodic; thickness: of disks. With a run, its obstacles are no grains, and
-    a layer is the room that they leave; where there is nothing else, they are grains, and overlaps count once."""
+    lengths in m; height: of a period, where z is periodic; thickness: of disks. With a run, its obstacles are no
+    grains, and a layer is the room that they leave; where there is nothing else, they are grains, and overlaps count
+    once."""
 
     def __init__(self, edges, area, height=None, thickness=None, run=None):
         self.run, self.obstacle_ids, self.union, self.taken = run, None, None, 0.0
@@ -58,8 +59,10 @@ class LayerSums:
 
     def add(self, frame):
         if np.any(frame.arrays.get("clump", -1) >= 0):
-            raise RunFolderError("frames have the members of clumps, whose volumes overlap; add analysis.grain_profiles to the "
-                                 "case, which counts clumps.")
+            raise RunFolderError(
+                "frames have the members of clumps, whose volumes overlap; add analysis.grain_profiles to the "
+                "case, which counts clumps."
+            )
         part = self.parts(frame.position[:, 2], frame.radius)
         self.frames += 1
         stands = self.obstacles_in(frame)
@@ -86,8 +89,8 @@ class LayerSums:
 
     def profiles(self):
         """Columns over z, the middle of the layers: solid fraction, velocity (NaN where no grain was), flux, granular
-        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and frames, stresses weighted with the solid fraction, and of
-        the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
+        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and frames, stresses weighted with the solid fraction, and
+        of the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
         if self.frames == 0:
             raise RunFolderError("there is no frame of the grains in this time.")
         whole = np.maximum(self.frames * self.layer_volumes - self.taken, 1e-9 * self.frames * self.layer_volumes)

@@ -1,4 +1,5 @@
-"""Transport relations q*(tau*) and the drag of a sphere from the literature, and the numbers Zhang et al. (2022) print."""
+"""Transport relations q*(tau*) and the drag of a sphere from the literature, and the numbers Zhang et al. (2022)
+print."""
 import numpy as np
 
 
@@ -30,8 +31,8 @@ CONTINUUM_PREFACTOR = 6.8
 def zhang_wide_bed(shields, prefactor=1.0):
     """The curve of Zhang et al. (2022), fig. 6, for beds without side walls: q* = (tau* - 0.033)^1.5, as printed.
 
-    With that prefactor the curve is a factor of 3 to 8 below the relations above and below the paper's own flume, so one
-    between 5 and 8 seems to be missing. Do not take it as a reference before the figure's data have been read.
+    With that prefactor the curve is a factor of 3 to 8 below the relations above and below the paper's own flume, so
+    one between 5 and 8 seems to be missing. Do not take it as a reference before the figure's data have been read.
     """
     return excess_power(shields, prefactor, 0.033)
 
@@ -51,13 +52,14 @@ def flume_band():
 
 
 def schiller_naumann_drag(reynolds):
-    """Drag coefficient of a sphere (Schiller and Naumann 1933): 24 (1 + 0.15 Re^0.687)/Re below Re = 1000, 0.44 beyond."""
+    """Drag coefficient of a sphere (Schiller and Naumann 1933): 24 (1 + 0.15 Re^0.687)/Re below Re = 1000, 0.44
+    beyond."""
     return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) if reynolds < 1000.0 else 0.44
 
 
-# Direct numerical simulation of an open channel over one layer of spheres on a square lattice: u* d/nu, height of the surface above
-# the floor in diameters, Reynolds number of the flow rate per width (their abstract), and mean velocity in u* over the depth from
-# 0.8 diameters above the floor on. M. Mazzuoli, M. Uhlmann, J. Fluid Mech. 824 (2017) 722.
+# Direct numerical simulation of an open channel over one layer of spheres on a square lattice: u* d/nu, height of the
+# surface above the floor in diameters, Reynolds number of the flow rate per width (their abstract), and mean velocity
+# in u* over the depth from 0.8 diameters above the floor on. M. Mazzuoli, M. Uhlmann, J. Fluid Mech. 824 (2017) 722.
 SPHERE_CHANNEL_NUMBER, SPHERE_CHANNEL_HEIGHT, SPHERE_CHANNEL_FLOW_RATE = 120.0, 5.5, 6900.0
 SPHERE_CHANNEL_MEAN = SPHERE_CHANNEL_FLOW_RATE / (SPHERE_CHANNEL_NUMBER * (SPHERE_CHANNEL_HEIGHT - 0.8))
 
@@ -68,23 +70,27 @@ def settling_speed(diameter, density_ratio, gravity, viscosity):
     for _ in range(200):
         speed = 0.5 * (low + high)
         weight = 4.0 / 3.0 * (density_ratio - 1.0) * gravity * diameter
-        low, high = (low, speed) if schiller_naumann_drag(speed * diameter / viscosity) * speed**2 > weight else (speed, high)
+        low, high = (
+            (low, speed) if schiller_naumann_drag(speed * diameter / viscosity) * speed**2 > weight else (speed, high)
+        )
     return 0.5 * (low + high)
 
 
 def beetstra_drag(phi, reynolds):
-    """Mean drag on a sphere of an array over Stokes' drag, without the mean pressure gradient; phi: solid fraction, reynolds: of
-    the superficial velocity and the diameter. R. Beetstra, M. A. van der Hoef, J. A. M. Kuipers, AIChE J. 53 (2007) 489; for slow
-    flow the law of M. A. van der Hoef et al., J. Fluid Mech. 528 (2005) 233."""
+    """Mean drag on a sphere of an array over Stokes' drag, without the mean pressure gradient; phi: solid fraction,
+    reynolds: of the superficial velocity and the diameter. R. Beetstra, M. A. van der Hoef, J. A. M. Kuipers, AIChE J.
+    53 (2007) 489; for slow flow the law of M. A. van der Hoef et al., J. Fluid Mech. 528 (2005) 233."""
     gap = 1.0 - phi
     slow = 10.0 * phi / gap**2 + gap**2 * (1.0 + 1.5 * np.sqrt(phi))
-    fast = (1.0 / gap + 3.0 * phi * gap + 8.4 * reynolds**-0.343) / (1.0 + 10.0**(3.0 * phi) * reynolds**(-0.5 - 2.0 * phi))
+    fast = (1.0 / gap + 3.0 * phi * gap + 8.4 * reynolds**-0.343) / (
+        1.0 + 10.0 ** (3.0 * phi) * reynolds ** (-0.5 - 2.0 * phi)
+    )
     return slow + 0.413 * reynolds / (24.0 * gap**2) * fast
 
 
 def tenneti_drag(phi, reynolds):
-    """The same by S. Tenneti, R. Garg, S. Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072; times 1 - phi, since their force
-    contains the mean pressure gradient."""
+    """The same by S. Tenneti, R. Garg, S. Subramaniam, Int. J. Multiphase Flow 37 (2011) 1072; times 1 - phi, since
+    their force contains the mean pressure gradient."""
     gap = 1.0 - phi
     alone = 1.0 + 0.15 * reynolds**0.687
     slow = 5.81 * phi / gap**3 + 0.48 * phi**(1.0 / 3.0) / gap**4

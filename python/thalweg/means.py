@@ -31,7 +31,8 @@ class Mean(NamedTuple):
 class Steadiness(NamedTuple):
     """Verdict of steadiness()."""
     trend: str     # STEADY, DRIFTING, or why the series is too short to tell: TOO_FEW, NOT_BOUNDED
-    drift: float   # by which a straight line rises over the series, in the unit of the series; not a number with < 3 batches
+    # Rise of a straight line over the series, in the unit of the series; not a number with fewer than 3 batches.
+    drift: float
     error: float   # standard error of the drift
 
     @property
@@ -44,15 +45,19 @@ class Steadiness(NamedTuple):
         if self.trend == TOO_FEW:
             return f"too short a time to tell whether it is steady, which takes {FEWEST_INDEPENDENT} independent values"
         line = f"a straight line through it changes by {self.drift:+.2g} +- {self.error:.2g} over this time, which is"
-        return {DRIFTING: f"not steady: {line} beyond chance",
-                STEADY: f"steady: {line} within chance and (95 %) less than half of the mean",
-                NOT_BOUNDED: f"too short a time to tell whether it is steady: {line} within chance, but may be half of the mean",
-                }[self.trend]
+        return {
+            DRIFTING: f"not steady: {line} beyond chance",
+            STEADY: f"steady: {line} within chance and (95 %) less than half of the mean",
+            NOT_BOUNDED: (
+                f"too short a time to tell whether it is steady: {line} within chance, but may be half of the mean"
+            ),
+        }[self.trend]
 
 
 def at_equal_intervals(time):
-    """Which of the times of a series (s, rising) to take so that means, errors and trends, which weigh all values alike, are not
-    those of the part with the shortest intervals: all, or, where the interval was changed at a restart, those at the longest."""
+    """Which of the times of a series (s, rising) to take so that means, errors and trends, which weigh all values
+    alike, are not those of the part with the shortest intervals: all, or, where the interval was changed at a restart,
+    those at the longest."""
     time = np.asarray(time, float)
     steps = np.diff(time)
     if len(steps) < 2:
@@ -72,8 +77,8 @@ def at_equal_intervals(time):
 
 
 def in_batches(values):
-    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 1024, and the length of a batch; values of an
-    incomplete batch are left out."""
+    """Means of batches of 1, 2, 4, ... values, the shortest that make fewer than 1024, and the length of a batch;
+    values of an incomplete batch are left out."""
     length = 1
     while len(values) // length >= MOST_BATCHES:
         length *= 2
@@ -86,19 +91,20 @@ def autocovariance(distances, lag):
 
 
 def lack(count, lag, fitted):
-    """The share of the long-run variance, times count, that the autocovariance at a lag lacks where a mean (fitted: 1) or a line
-    (2) through the same values was taken away: the sum over i of H_(i, i + lag), H the projection onto what was taken away."""
+    """The share of the long-run variance, times count, that the autocovariance at a lag lacks where a mean (fitted: 1)
+    or a line (2) through the same values was taken away: the sum over i of H_(i, i + lag), H the projection onto what
+    was taken away."""
     terms = count - lag
     of_line = terms * (terms * terms - 1.0 - 3.0 * lag * lag) / (count * (count * count - 1.0)) if fitted == 2 else 0.0
     return terms / count + of_line
 
 
 def long_run_variance(distances, fitted, round_off):
-    """Number of values times the variance of their mean, by Geyer's initial monotone sequence (Stat. Sci. 7 (1992) 473, sec. 3.3)
-    with the bias of the autocovariances removed, and how many independent values would have the same.
+    """Number of values times the variance of their mean, by Geyer's initial monotone sequence (Stat. Sci. 7 (1992) 473,
+    sec. 3.3) with the bias of the autocovariances removed, and how many independent values would have the same.
 
-    distances: of values at equal intervals from their mean (fitted: 1) or from a straight line (2). round_off: what they are
-    off by at least, in their unit.
+    distances: of values at equal intervals from their mean (fitted: 1) or from a straight line (2). round_off: what
+    they are off by at least, in their unit.
     """
     count = len(distances)
     variance = autocovariance(distances, 0)
@@ -118,18 +124,21 @@ def long_run_variance(distances, fitted, round_off):
 
 
 def numbers(values):
-    """The values as an array. ValueError if one is not finite: what stands for "not measured" would make the mean the same."""
+    """The values as an array. ValueError if one is not finite: what stands for "not measured" would make the mean the
+    same."""
     values = np.asarray(values, float)
     lacking = np.count_nonzero(~np.isfinite(values))
     if lacking:
-        raise ValueError(f"{lacking} of {len(values)} values are not finite; leave them out: values[np.isfinite(values)]")
+        raise ValueError(
+            f"{lacking} of {len(values)} values are not finite; leave them out: values[np.isfinite(values)]"
+        )
     return values
 
 
 def mean_with_error(values):
-    """Mean of a stationary series at equal intervals, with its standard error, from the long-run variance of its batches. Of a
-    series that is worth fewer than 20 independent values the error is an underestimate: see Mean.error_holds. ValueError if
-    there are no values, or one is not finite."""
+    """Mean of a stationary series at equal intervals, with its standard error, from the long-run variance of its
+    batches. Of a series that is worth fewer than 20 independent values the error is an underestimate: see
+    Mean.error_holds. ValueError if there are no values, or one is not finite."""
     values = numbers(values)
     count = len(values)
     if count == 0:
@@ -146,11 +155,12 @@ def mean_with_error(values):
 
 
 def steadiness(values):
-    """Whether a straight line through a series at equal intervals rises or falls by no more than chance, and by less than half
-    of the mean: that is what `steady` claims, with 95 % confidence. A steady series is said to drift one time in twenty.
+    """Whether a straight line through a series at equal intervals rises or falls by no more than chance, and by less
+    than half of the mean: that is what `steady` claims, with 95 % confidence. A steady series is said to drift one time
+    in twenty.
 
-    The slope has the variance that the long-run variance of the values about the line gives it (Santer et al., J. Geophys. Res.
-    105 (2000) 7337, who take the number of independent values from the first lag alone).
+    The slope has the variance that the long-run variance of the values about the line gives it (Santer et al., J.
+    Geophys. Res. 105 (2000) 7337, who take the number of independent values from the first lag alone).
     """
     values = numbers(values)
     batches, _ = in_batches(values)
@@ -159,7 +169,9 @@ def steadiness(values):
         return Steadiness(TOO_FEW, float("nan"), float("nan"))
     time, spread = np.arange(count) - 0.5 * (count - 1.0), count * (count**2 - 1.0) / 12.0
     slope = float(time @ (batches - batches.mean())) / spread
-    variance, independent = long_run_variance(batches - batches.mean() - slope * time, 2, ROUND_OFF * np.max(np.abs(batches)))
+    variance, independent = long_run_variance(
+        batches - batches.mean() - slope * time, 2, ROUND_OFF * np.max(np.abs(batches))
+    )
     drift, error = slope * count, float(np.sqrt(variance / spread)) * count
     if independent < FEWEST_INDEPENDENT:
         return Steadiness(TOO_FEW, drift, error)

@@ -1,9 +1,9 @@
 """Obstacles: grains that are none of the bed but stand in it, such as a sill, a pier or a boulder.
 
-As the program has them (driver/estimate/obstacles.hpp): of the grains that are fixed and placed by positions, those that overlap another
-one by more than a twentieth of the smaller diameter, and those at least twice as large as the largest free grain. A place where
-several overlap counts once, and the bed is what is left, in the room that they leave. (The program knows those that move as
-prescribed as well; frames with clumps are left to it.)
+As the program has them (driver/estimate/obstacles.hpp): of the grains that are fixed and placed by positions, those
+that overlap another one by more than a twentieth of the smaller diameter, and those at least twice as large as the
+largest free grain. A place where several overlap counts once, and the bed is what is left, in the room that they leave.
+(The program knows those that move as prescribed as well; frames with clumps are left to it.)
 """
 import numpy as np
 
@@ -53,8 +53,8 @@ def obstacles(run, frame):
 
 
 def union_in_layers(run, edges, position, radius):
-    """m^3 between one edge (m) and the next that spheres fill together, overlaps counted once, from points a twentieth of the
-    smallest radius apart: of one sphere right to 1 %."""
+    """m^3 between one edge (m) and the next that spheres fill together, overlaps counted once, from points a twentieth
+    of the smallest radius apart: of one sphere right to 1 %."""
     volumes = np.zeros(len(edges) - 1)
     if not len(radius):
         return volumes

@@ -10,7 +10,9 @@ class RandomArray:
     def __init__(self, folder):
         self.run = run = Run(folder)
         self.case, self.count = run.case, run.summary["grains"]
-        self.density, self.viscosity = float(self.case["fluid"]["density"]), float(self.case["fluid"]["kinematic_viscosity"])
+        self.density, self.viscosity = float(self.case["fluid"]["density"]), float(
+            self.case["fluid"]["kinematic_viscosity"]
+        )
         self.diameter, self.volume = float(self.case["grains"][0]["diameter"]), float(run.size.prod())
         self.acceleration = float(self.case["gravity"]["vector"][0])
         self.solid_fraction = self.count * np.pi / 6.0 * self.diameter**3 / self.volume

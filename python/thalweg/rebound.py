@@ -6,15 +6,16 @@ IMPACTS = 3
 
 
 def settling_time(case):
-    """Time (s) that sound takes around the first grain of a case, pi R/c_s; before it the fluid cannot respond to a rebound."""
+    """Time (s) that sound takes around the first grain of a case, pi R/c_s; before it the fluid cannot respond to a
+    rebound."""
     radius, spacing = 0.5 * case["grains"][0]["diameter"], case["domain"]["spacing"]
     return math.pi * radius * math.sqrt(3.0) * case["fluid"]["time_step"] / spacing
 
 
 def impacts(times, gaps, velocities, answer):
-    """Velocities before and after each of the first impacts, positive: the largest since the last impact, and that at the
-    time `answer` (s) after the contact. gaps: diameters; velocities: m/s, away from the other body. The fall from the start
-    counts from two diameters on; a body that begins at the other one and leaves it has not met it."""
+    """Velocities before and after each of the first impacts, positive: the largest since the last impact, and that at
+    the time `answer` (s) after the contact. gaps: diameters; velocities: m/s, away from the other body. The fall from
+    the start counts from two diameters on; a body that begins at the other one and leaves it has not met it."""
     begin, found = next(k for k, gap in enumerate(gaps) if gap < 2.0), []
     begin = next((k for k in range(begin, len(gaps)) if velocities[k] < 0.0), len(gaps))
     while len(found) < IMPACTS:

@@ -1,7 +1,8 @@
 """The state of a sheared mixture of grains and fluid, and the granular flow rule of Zhang et al. (2022).
 
-Stresses come from the group `stress_balance` of profiles.h5. As in the paper, the solid's effective stress is that of contacts, of
-velocity fluctuations and of the fluid on the grains (eq. 13), with the pore pressure added back (eq. 15); positive in tension.
+Stresses come from the group `stress_balance` of profiles.h5. As in the paper, the solid's effective stress is that of
+contacts, of velocity fluctuations and of the fluid on the grains (eq. 13), with the pore pressure added back (eq. 15);
+positive in tension.
 """
 from dataclasses import dataclass
 
@@ -57,11 +58,14 @@ class FlowState:
 
 
 def flow_state(solid_fraction, stress, shear_rate, diameter, density, viscosity):
-    """stress: of the solid (Pa) [..., 3, 3]; shear_rate: 1/s; diameter: m; density: of the grains, kg/m^3; viscosity: dynamic,
-    Pa s. NaN where the solid is not under pressure."""
+    """stress: of the solid (Pa) [..., 3, 3]; shear_rate: 1/s; diameter: m; density: of the grains, kg/m^3; viscosity:
+    dynamic, Pa s. NaN where the solid is not under pressure."""
     pressure = -np.trace(stress, axis1=-2, axis2=-1) / 3.0
     pressure = np.where(pressure > 0.0, pressure, np.nan)
     deviator = 0.5 * (stress + np.swapaxes(stress, -1, -2)) + pressure[..., None, None] * np.eye(3)
     shear = np.sqrt(0.5 * np.sum(deviator**2, axis=(-2, -1)))
     rate = np.abs(shear_rate)
-    return FlowState(solid_fraction, rate, pressure, shear, viscosity * rate / pressure, rate * diameter * np.sqrt(density / pressure))
+    return FlowState(
+        solid_fraction, rate, pressure, shear, viscosity * rate / pressure,
+        rate * diameter * np.sqrt(density / pressure),
+    )

@@ -1,7 +1,8 @@
-"""Water over a floor of fixed spheres without side walls: bulk velocity, equivalent sand roughness and logarithmic profile.
+"""Water over a floor of fixed spheres without side walls: bulk velocity, equivalent sand roughness and logarithmic
+profile.
 
-The flow begins at the height 0.8 d of the virtual wall, as in Chan-Braun et al. (2011) and Mazzuoli and Uhlmann (2017): u*, the
-bulk velocity and the logarithmic law refer to the depth from there to the surface.
+The flow begins at the height 0.8 d of the virtual wall, as in Chan-Braun et al. (2011) and Mazzuoli and Uhlmann (2017):
+u*, the bulk velocity and the logarithmic law refer to the depth from there to the surface.
 """
 from dataclasses import dataclass
 
@@ -30,7 +31,8 @@ class RoughFlow:
 
 
 def roughness_of(bulk_velocity, depth):
-    """k_s of the profile u/u* = ln(30 z/k_s)/0.41 over a depth, with a mean of bulk_velocity (in u*); in units of the depth."""
+    """k_s of the profile u/u* = ln(30 z/k_s)/0.41 over a depth, with a mean of bulk_velocity (in u*); in units of the
+    depth."""
     return 30.0 * depth * np.exp(-1.0 - VON_KARMAN * bulk_velocity)
 
 
@@ -40,21 +42,26 @@ def friction_velocity(run):
 
 
 def rough_flow(run, start):
-    """From the momentum of the water from a time (s) on; that below the virtual wall, 1 % of it, counts to the flow above."""
+    """From the momentum of the water from a time (s) on; that below the virtual wall, 1 % of it, counts to the flow
+    above."""
     depth = run.size[2] - VIRTUAL_WALL * run.diameter
     counted = run.series["time"] >= start
     momentum = mean_with_error(run.series["fluid_momentum_x"][counted])
     u_star, density = friction_velocity(run), float(run.case["fluid"]["density"])
     in_u_star = 1.0 / (density * run.size[0] * run.size[1] * depth * u_star)
-    return RoughFlow(u_star, u_star * run.diameter / float(run.case["fluid"]["kinematic_viscosity"]), depth / run.diameter,
-                     momentum.mean * in_u_star, momentum.error * in_u_star)
+    return RoughFlow(
+        u_star, u_star * run.diameter / float(run.case["fluid"]["kinematic_viscosity"]), depth / run.diameter,
+        momentum.mean * in_u_star, momentum.error * in_u_star,
+    )
 
 
 def plus_profile(run):
     """Height in diameters above the virtual wall and mean velocity in u*, of the middles of the layers."""
     means = run.profiles.get("fluid_statistics")
     if means is None:
-        raise RunFolderError(f"{run.folder}: there are no means of the fluid yet (analysis.fluid_statistics in the case).")
+        raise RunFolderError(
+            f"{run.folder}: there are no means of the fluid yet (analysis.fluid_statistics in the case)."
+        )
     return means["z"] / run.diameter - VIRTUAL_WALL, means["velocity"][:, 0] / friction_velocity(run)
 
 

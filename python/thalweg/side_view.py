@@ -15,7 +15,8 @@ AT_REST = 0.5         # s: a pixel that shows the same grain for so long is stat
 
 
 def with_images_along_x(position, radius, length):
-    """Positions and radii with copies of the grains that stick out of a box that is periodic along x, and whose they are."""
+    """Positions and radii with copies of the grains that stick out of a box that is periodic along x, and whose they
+    are."""
     x, owner = position[:, 0], np.arange(len(position))
     low, high = x < radius, x > length - radius
     shift = np.array([length, 0.0, 0.0])
@@ -62,8 +63,8 @@ class Surface(NamedTuple):
 
 
 def static_surface(run, time=None, duration=AT_REST):
-    """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed the
-    same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it."""
+    """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed
+    the same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it."""
     times = run.grains.times
     if len(times) < 2 or times[-1] - times[0] < duration:
         raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} s.")
@@ -91,8 +92,9 @@ def surface_of(frames, size, pixel, periodic_x=True):
 
 
 def visible_grains(position, radius, length=None, directions=120):
-    """Whether the camera's evaluation sees each grain: no more than 60 % of its perimeter is behind others, and no visible
-    grain in front of it is closer in projection than a sixth of a diameter. `length`: of a periodic box along x (m)."""
+    """Whether the camera's evaluation sees each grain: no more than 60 % of its perimeter is behind others, and no
+    visible grain in front of it is closer in projection than a sixth of a diameter. `length`: of a periodic box along x
+    (m)."""
     place, size, owner = (position, radius, np.arange(len(radius))) if length is None else with_images_along_x(
         position, radius, length)
     angle = 2.0 * np.pi * (np.arange(directions) + 0.5) / directions
@@ -104,7 +106,9 @@ def visible_grains(position, radius, length=None, directions=120):
         apart = np.hypot(*offset.T)
         near = np.flatnonzero(in_front & (apart < size + radius[grain]))
         rim = radius[grain] * around
-        covered = (np.hypot(rim[:, None, 0] - offset[near, 0], rim[:, None, 1] - offset[near, 1]) < size[near]).any(axis=1)
+        covered = (np.hypot(rim[:, None, 0] - offset[near, 0], rim[:, None, 1] - offset[near, 1]) < size[near]).any(
+            axis=1
+        )
         too_near = (apart[near] < 2.0 * NEAREST * radius[grain]) & seen[owner[near]]
         seen[grain] = covered.mean() <= COVERED and not too_near.any()
     return seen

@@ -3,7 +3,8 @@ from pathlib import Path
 
 
 def write_stl(path, triangles):
-    """triangles: three corners (x, y, z) each, anticlockwise seen from outside; in metres where the case gives no scale."""
+    """triangles: three corners (x, y, z) each, anticlockwise seen from outside; in metres where the case gives no
+    scale."""
     name = Path(path).stem
     lines = [f"solid {name}"]
     for corners in triangles:

@@ -18,8 +18,8 @@ def read_rows(path):
 
 
 def merged_rows(path, rows):
-    """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back. None:
-    there is no table, and rows are all there is. What is in it outlives the folders of the runs."""
+    """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back.
+    None: there is no table, and rows are all there is. What is in it outlives the folders of the runs."""
     if path is None:
         return rows
     path = Path(path)
@@ -36,8 +36,8 @@ def merged_rows(path, rows):
 
 
 def read_series(path):
-    """Columns of series.csv by name without the unit. The last row may still be being written: it counts once its end of
-    line is there."""
+    """Columns of series.csv by name without the unit. The last row may still be being written: it counts once its end
+    of line is there."""
     if not path.exists():
         raise RunFolderError(f"{path}: there is no such file; is this the folder of a run?")
     text = path.read_text(encoding="utf-8")

@@ -1,7 +1,8 @@
-"""A resolved bed beside the two-phase continuum, after figs. 8, 10(b) and 11 of Zhang et al. (2022), and the drag of its layers.
+"""A resolved bed beside the two-phase continuum, after figs. 8, 10(b) and 11 of Zhang et al. (2022), and the drag of
+its layers.
 
-The resolved run has `analysis.stress_balance`; the continuum is a run with `system: continuum`, best with `creep: {}`, of the same
-slope, grains and fluid. Heights are from the surface by solid fraction of each.
+The resolved run has `analysis.stress_balance`; the continuum is a run with `system: continuum`, best with `creep: {}`,
+of the same slope, grains and fluid. Heights are from the surface by solid fraction of each.
 """
 from dataclasses import dataclass
 
@@ -22,7 +23,8 @@ DILUTE = 0.02                 # solid fraction below which too few grains pass f
 
 @dataclass
 class Bed:
-    """Layers of a resolved run; height in diameters over the surface, velocities in m/s along x, stresses in Pa (xz)."""
+    """Layers of a resolved run; height in diameters over the surface, velocities in m/s along x, stresses in Pa
+    (xz)."""
     height: np.ndarray
     solid_fraction: np.ndarray
     grain_velocity: np.ndarray
@@ -54,8 +56,9 @@ def resolved_bed(run):
 
 
 def decay_length(height, velocity):
-    """Diameters in which the velocity of the grains falls by a factor e below the surface: from a straight line through its
-    logarithm from 2 to 7 diameters deep, or as deep as the grains still move downhill. NaN with fewer than three layers."""
+    """Diameters in which the velocity of the grains falls by a factor e below the surface: from a straight line through
+    its logarithm from 2 to 7 diameters deep, or as deep as the grains still move downhill. NaN with fewer than three
+    layers."""
     deep = np.flatnonzero((height < -CREEP_FIT[0]) & (height > -CREEP_FIT[1]))[::-1]      # from the top down
     stopped = np.flatnonzero(~(velocity[deep] > 0.0))
     deep = deep[:stopped[0]] if len(stopped) else deep
@@ -71,8 +74,11 @@ def different_materials(run, column):
         return {"slope": of.case["gravity"].get("slope"), "diameter of the grains": material["diameter"],
                 "density of the grains": material["density"], "kinematic viscosity": fluid["kinematic_viscosity"]}
     one, other = values(run), values(column)
-    return ", ".join(f"{name} {one[name]} and {other[name]}" for name in one
-                     if not (one[name] == other[name] or np.isclose(float(one[name] or 0), float(other[name] or 0), rtol=1e-3)))
+    return ", ".join(
+        f"{name} {one[name]} and {other[name]}"
+        for name in one
+        if not (one[name] == other[name] or np.isclose(float(one[name] or 0), float(other[name] or 0), rtol=1e-3))
+    )
 
 
 def draw_profiles(axes, bed, column):
@@ -80,7 +86,9 @@ def draw_profiles(axes, bed, column):
     fraction, velocity, stress = axes
     fraction.plot(bed.solid_fraction, bed.height, "k-")
     velocity.plot(bed.fluid_velocity, bed.height, color=FLUID, label="fluid")
-    velocity.plot(np.where(bed.solid_fraction > 1e-4, bed.grain_velocity, np.nan), bed.height, color=GRAINS, label="grains")
+    velocity.plot(
+        np.where(bed.solid_fraction > 1e-4, bed.grain_velocity, np.nan), bed.height, color=GRAINS, label="grains"
+    )
     stress.plot(bed.solid_stress, bed.height, color=GRAINS, label="grains")
     stress.plot(bed.fluid_stress, bed.height, color=FLUID, label="fluid")
     if column is not None:
@@ -93,17 +101,23 @@ def draw_profiles(axes, bed, column):
         stress.plot(of["fluid_shear_stress"], height, "--", color=FLUID)
     top = min(bed.height[-1], 6.0)
     fraction.set(xlabel="solid fraction [1]", ylim=(-4.0, top), ylabel="height over the bed surface [d]")
-    velocity.set(xlabel="velocity [m/s]", ylim=(-4.0, top), xlim=(-0.02, 1.05 * np.interp(top, bed.height, bed.fluid_velocity)))
+    velocity.set(
+        xlabel="velocity [m/s]", ylim=(-4.0, top), xlim=(-0.02, 1.05 * np.interp(top, bed.height, bed.fluid_velocity))
+    )
     stress.set(xlabel="shear stress [Pa]", ylim=(-4.0, top))
     velocity.legend(frameon=False, fontsize=8)
     stress.legend(frameon=False, fontsize=8)
 
 
 def draw_flow_rule(friction, fraction, bed, diameter):
-    """mu(I_m) and phi(I_m) of every sheared layer below the dilute top, coloured by height, and eqs. 20 and 21. Layers less than
-    a diameter above the floor are left out."""
+    """mu(I_m) and phi(I_m) of every sheared layer below the dilute top, coloured by height, and eqs. 20 and 21. Layers
+    less than a diameter above the floor are left out."""
     state = bed.state
-    shown = (state.shear_rate > SHEARED * np.sqrt(9.81 / diameter)) & (bed.solid_fraction > DILUTE) & np.isfinite(state.friction)
+    shown = (
+        (state.shear_rate > SHEARED * np.sqrt(9.81 / diameter))
+        & (bed.solid_fraction > DILUTE)
+        & np.isfinite(state.friction)
+    )
     shown &= bed.height > bed.height[0] + 1.0
     mixed, order = state.mixed_number[shown], np.argsort(state.mixed_number[shown])
     if not len(mixed):
@@ -123,7 +137,8 @@ def draw_flow_rule(friction, fraction, bed, diameter):
 
 
 def draw_creep(axes, bed, column):
-    """The velocity of the grains below the surface; the continuum's creep has no scale and is drawn through the run's at 2 d."""
+    """The velocity of the grains below the surface; the continuum's creep has no scale and is drawn through the run's
+    at 2 d."""
     moving = (bed.height < 1.0) & (bed.grain_velocity > 0.0)
     axes.semilogx(bed.grain_velocity[moving], bed.height[moving], color=GRAINS,
                   label=f"run, e-fold {decay_length(bed.height, bed.grain_velocity):.2f} d")
@@ -134,7 +149,9 @@ def draw_creep(axes, bed, column):
         order = np.argsort(height)
         creep = creep * at_two / np.interp(-CREEP_FIT[0], height[order], creep[order])
         shown = creep > 0.0
-        axes.semilogx(creep[shown], height[shown], "k--", label=f"granular fluidity, e-fold {decay_length(height, creep):.2f} d")
+        axes.semilogx(
+            creep[shown], height[shown], "k--", label=f"granular fluidity, e-fold {decay_length(height, creep):.2f} d"
+        )
     slowest = np.min(bed.grain_velocity[moving & (bed.height > -10.0)], initial=np.inf)
     fastest = np.max(bed.grain_velocity[moving], initial=0.0)
     if slowest < fastest:
@@ -148,7 +165,9 @@ def draw_drag(axes, bed):
     shown = (bed.solid_fraction > DILUTE) & (bed.drag_function > 0.0) & (bed.height > -2.0)
     phi, height = bed.solid_fraction[shown], bed.height[shown]
     axes.semilogx(bed.drag_function[shown], height, "o", ms=4, color=FLUID, label="layers of the run")
-    axes.semilogx(beetstra_drag(phi, bed.drag_reynolds_number[shown]), height, "k-", lw=1.2, label="Beetstra et al. (2007)")
+    axes.semilogx(
+        beetstra_drag(phi, bed.drag_reynolds_number[shown]), height, "k-", lw=1.2, label="Beetstra et al. (2007)"
+    )
     axes.set(xlabel="drag over Stokes' drag [1]", ylabel="height over the bed surface [d]")
     axes.legend(frameon=False, fontsize=8)
 
@@ -160,8 +179,8 @@ def draw_temperature(axes, bed):
 
 
 def comparison_figure(run, column=None):
-    """Eight panels: profiles, creep, flow rule, drag and granular temperature of a resolved bed, and a continuum column beside
-    them, which has no granular temperature."""
+    """Eight panels: profiles, creep, flow rule, drag and granular temperature of a resolved bed, and a continuum column
+    beside them, which has no granular temperature."""
     bed = resolved_bed(run)
     figure, axes = plt.subplots(2, 4, figsize=(15, 8), layout="constrained")
     draw_profiles(axes[0, :3], bed, column)

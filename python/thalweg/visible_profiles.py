@@ -12,9 +12,9 @@ UNITS = {"z": "m", "areal_fraction": "1", "velocity": "m/s", "temperature": "m^2
 class VisibleSums:
     """Sums over frames of the visible grains in layers; edges in m from the surface, length of the box in m.
 
-    Zhang et al. (2022), sec. 2.2: the height of a grain is that of its centre over the surface below it; the areal fraction
-    is that of the visible disks, the velocity that of a layer's momentum. The temperature is half the variance of the two
-    velocities in the frame's plane about the mean of the layer in the same frame.
+    Zhang et al. (2022), sec. 2.2: the height of a grain is that of its centre over the surface below it; the areal
+    fraction is that of the visible disks, the velocity that of a layer's momentum. The temperature is half the variance
+    of the two velocities in the frame's plane about the mean of the layer in the same frame.
     """
 
     def __init__(self, edges, length, periodic=True):

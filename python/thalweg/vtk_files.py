@@ -1,7 +1,7 @@
 """The VTK XML files of a run (.vtp, .vti, .pvti and .pvd), read without VTK.
 
-Arrays lie in one appended section, raw or in base64, in blocks compressed by zlib or not at all, with headers of 32 or 64
-bits: the format of the VTK User's Guide, "VTK XML formats", as Thalweg and VTK's own writers make it.
+Arrays lie in one appended section, raw or in base64, in blocks compressed by zlib or not at all, with headers of 32 or
+64 bits: the format of the VTK User's Guide, "VTK XML formats", as Thalweg and VTK's own writers make it.
 """
 import base64
 import mmap
@@ -17,15 +17,16 @@ TYPES = {"Int8": "i1", "UInt8": "u1", "Int32": "i4", "UInt32": "u4", "Int64": "i
 
 
 class Appended:
-    """The appended section of a file: bytes by offset. data: the file, of which only what is asked for is read; start: of the
-    section."""
+    """The appended section of a file: bytes by offset. data: the file, of which only what is asked for is read; start:
+    of the section."""
 
     def __init__(self, data, start, encoded, header_type, compressed):
         self.data, self.start, self.encoded, self.compressed = data, start, encoded, compressed
         self.word = np.dtype("<" + TYPES[header_type])
 
     def _piece(self, start, size):
-        """`size` bytes that begin at `start`, and where the next piece begins; in base64 every piece has its own end."""
+        """`size` bytes that begin at `start`, and where the next piece begins; in base64 every piece has its own
+        end."""
         at = self.start + start
         if not self.encoded:
             return self.data[at:at + size], start + size
@@ -77,8 +78,10 @@ def arrays_in(section, appended, path):
     found = {}
     for entry in section if section is not None else ():
         if entry.get("format") != "appended":
-            raise RunFolderError(f"{path}: its array {entry.get('Name')} is written in the format {entry.get('format')}, "
-                                 "only appended is read.")
+            raise RunFolderError(
+                f"{path}: its array {entry.get('Name')} is written in the format {entry.get('format')}, "
+                "only appended is read."
+            )
         values = np.frombuffer(appended.bytes_at(int(entry.get("offset"))), "<" + TYPES[entry.get("type")])
         components = int(entry.get("NumberOfComponents", 1))
         found[entry.get("Name")] = values.reshape(-1, components) if components > 1 else values

@@ -28,8 +28,9 @@ def law_of_the_wall(distance, friction_velocity, viscosity):
 
 
 def expected_speeds(run):
-    """Speeds between side walls that carry all of the water's weight along the slope, far above the bed (Zhang et al. 2022,
-    app. A): friction velocity sqrt(g_x W/2). None without such walls, or where that flow would not be turbulent."""
+    """Speeds between side walls that carry all of the water's weight along the slope, far above the bed (Zhang et al.
+    2022, app. A): friction velocity sqrt(g_x W/2). None without such walls, or where that flow would not be
+    turbulent."""
     along = run.gravity[0]
     if run.side_walls < 2 or not along > 0.0:
         return None
@@ -46,7 +47,9 @@ def measured_speeds(run, above):
     """Speeds above a height (m) in the mean over time that `analysis.fluid_statistics` gathered in profiles.h5."""
     means = run.profiles.get("fluid_statistics")
     if means is None or not np.any(means["section_fluid_fraction"]):
-        raise RunFolderError(f"{run.folder}: there are no means of the fluid yet (analysis.fluid_statistics in the case).")
+        raise RunFolderError(
+            f"{run.folder}: there are no means of the fluid yet (analysis.fluid_statistics in the case)."
+        )
     far = means["z"] > above
     if not far.any():
         raise RunFolderError(f"{run.folder}: the means of the fluid hold nothing above {above:.4g} m.")

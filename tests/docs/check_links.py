@@ -3,9 +3,9 @@
 
     check_links.py [ROOT]      of the repository (default: the one this file is in)
 
-A relative link or picture must name a file or folder of the repository, by a path that stays inside it and does not lead into
-generated folders (build, run); an anchor must be that of a heading of the page, as GitHub forms it. Links with a scheme
-(https:) are not followed. Prints one line per dead link and exits with 1 if there is any.
+A relative link or picture must name a file or folder of the repository, by a path that stays inside it and does not
+lead into generated folders (build, run); an anchor must be that of a heading of the page, as GitHub forms it. Links
+with a scheme (https:) are not followed. Prints one line per dead link and exits with 1 if there is any.
 """
 import pathlib
 import sys

@@ -9,13 +9,18 @@ import check_links
 import markdown_text
 
 CORRECT = {
-    "README.md": "# Start\n\n[a](docs/a.md), [part](docs/a.md#two-words), [here](#start), [folder](docs), ![p](docs/p.png)\n"
-                 "[b](docs/b.md \"title\"), [in\ntwo lines](docs/a.md), [web](https://example.org/none), [m](mailto:a@b.c)\n",
-    "docs/a.md": "# A\n\n## Two words\n\n## Two words\n\n[second](#two-words-1), [up](../README.md#start), [x](b.md#x_y-34)\n",
-    "docs/b.md": "# b\n\n## `x_y` (3/4)\n\n[![picture](p.png)](p.png), <img src=\"p.png\">, [ref]\n\n[ref]: a.md#a\n\n"
-                 "```\n[code](gone.md)\n```\n\n    [code](gone.md)\n\n`[code](gone.md)`\n\n- item\n\n      [code](gone.md)\n",
-    "docs/p.png": "",
-    "build/generated.md": "[gone](gone.md)\n",   # not ours to check
+    "README.md": (
+        "# Start\n\n[a](docs/a.md), [part](docs/a.md#two-words), [here](#start), [folder](docs), ![p](docs/p.png)\n"
+        "[b](docs/b.md \"title\"), [in\ntwo lines](docs/a.md), [web](https://example.org/none), [m](mailto:a@b.c)\n"
+    ),
+    "docs/a.md": (
+        "# A\n\n## Two words\n\n## Two words\n\n[second](#two-words-1), [up](../README.md#start), [x](b.md#x_y-34)\n"
+    ),
+    "docs/b.md": (
+        "# b\n\n## `x_y` (3/4)\n\n[![picture](p.png)](p.png), <img src=\"p.png\">, [ref]\n\n[ref]: a.md#a\n\n"
+        "```\n[code](gone.md)\n```\n\n    [code](gone.md)\n\n`[code](gone.md)`\n\n- item\n\n      [code](gone.md)\n"
+    ), "docs/p.png": "",
+    "build/generated.md": "[gone](gone.md)\n",  # not ours to check
 }
 
 # (text of a page in docs, a piece of the complaint)

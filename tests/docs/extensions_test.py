@@ -20,7 +20,9 @@ def additions(path):
 
 
 text = (root / "CONTRIBUTING.md").read_text()
-table = {(name, path): (int(count), set(re.findall(r"`([^`]+)`", files))) for name, path, count, files in row.findall(text)}
+table = {
+    (name, path): (int(count), set(re.findall(r"`([^`]+)`", files))) for name, path, count, files in row.findall(text)
+}
 expected = {}
 for script in sorted((root / "tests").glob("*/*/extend.py")):
     expected |= additions(script.relative_to(root).as_posix())

@@ -71,21 +71,31 @@ class Pages(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name).resolve()
-        for name, text in {"README.md": "# Start\n", "a/README.md": "# A\n", "a/b/README.md": "# B\n", "a/case.yaml": "",
-                           "src/main.cpp": "", "docs/c.md": "# C\n"}.items():
+        for name, text in {
+            "README.md": "# Start\n",
+            "a/README.md": "# A\n",
+            "a/b/README.md": "# B\n",
+            "a/case.yaml": "", "src/main.cpp": "",
+            "docs/c.md": "# C\n",
+        }.items():
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             (self.root / name).write_text(text)
 
     def test_links_to_folders_and_missing_files_are_adapted(self):
-        for text, expected in [("[a](../a)", "[a](../a/README.md)"), ("[a](../a/#a)", "[a](../a/README.md#a)"),
-                               ("see [the source](../src/main.cpp).", "see the source."), ("[src](../src)", "src"),
-                               ("[case](../a/case.yaml)", "[case](../a/case.yaml)"), ("[w](https://a.b)", "[w](https://a.b)"),
-                               ("[c](#c) and [s](../README.md#start)", "[c](#c) and [s](../README.md#start)"),
-                               ("`[x](../src)`", "`[x](../src)`")]:
+        for text, expected in [
+            ("[a](../a)", "[a](../a/README.md)"),
+            ("[a](../a/#a)", "[a](../a/README.md#a)"),
+            ("see [the source](../src/main.cpp).", "see the source."), ("[src](../src)", "src"),
+            ("[case](../a/case.yaml)", "[case](../a/case.yaml)"), ("[w](https://a.b)", "[w](https://a.b)"),
+            ("[c](#c) and [s](../README.md#start)", "[c](#c) and [s](../README.md#start)"),
+            ("`[x](../src)`", "`[x](../src)`"),
+        ]:
             self.assertEqual(stage.with_site_links(self.root, pathlib.Path("docs/c.md"), text), expected)
 
     def test_headings_have_their_anchors_and_code_is_left_alone(self):
-        self.assertEqual(stage.with_anchors("# A b\n## A b\n\n```\n# c\n```"), "# A b {#a-b}\n## A b {#a-b-1}\n\n```\n# c\n```")
+        self.assertEqual(
+            stage.with_anchors("# A b\n## A b\n\n```\n# c\n```"), "# A b {#a-b}\n## A b {#a-b-1}\n\n```\n# c\n```"
+        )
 
     def test_lists_have_room(self):
         self.assertEqual(stage.with_wide_lists("text\n- one\n  more\n- two\n\n  par\n\n      code\n\nend"),
@@ -109,10 +119,17 @@ class Pages(unittest.TestCase):
 
 class Comments(unittest.TestCase):
     def test_comments_document_what_they_stand_before_or_behind(self):
-        lines = ["// One.", "struct A {", "  double x;  // m", "             // or mm", "  int n;", "};  ", "}  // namespace a"]
-        self.assertEqual(list(doxygen_comments.documented(lines)),
-                         ["/// One.", "struct A {", "  double x;  ///< m", "             ///< or mm", "  int n;", "};  ",
-                          "}  // namespace a"])
+        lines = [
+            "// One.", "struct A {", "  double x;  // m", "             // or mm", "  int n;", "};  ",
+            "}  // namespace a",
+        ]
+        self.assertEqual(
+            list(doxygen_comments.documented(lines)),
+            [
+                "/// One.", "struct A {", "  double x;  ///< m", "             ///< or mm", "  int n;", "};  ",
+                "}  // namespace a",
+            ],
+        )
         self.assertEqual(list(doxygen_comments.documented(["// a < b @ c"])), ["/// a \\< b \\@ c"])
 
 

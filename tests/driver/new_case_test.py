@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""`thalweg new` over random experiments: it writes a case of the flow asked for, of which `thalweg check` has no warning, or says in
-one sentence why there is none, and leaves no file.
+"""`thalweg new` over random experiments: it writes a case of the flow asked for, of which `thalweg check` has no
+warning, or says in one sentence why there is none, and leaves no file.
 
-Called by ctest: new_case_test.py THALWEG MPIEXEC [unittest arguments]; EXPERIMENTS=300 in the environment tries more of them.
+Called by ctest: new_case_test.py THALWEG MPIEXEC [unittest arguments]; EXPERIMENTS=300 in the environment tries more of
+them.
 """
 import json
 import math
@@ -25,7 +26,8 @@ def log_uniform(chance, low, high):
 
 
 class Experiment:
-    """What somebody may ask for: grains of 0.2 mm to 5 cm, from plastic in water to steel in oil, from rest to sheet flow."""
+    """What somebody may ask for: grains of 0.2 mm to 5 cm, from plastic in water to steel in oil, from rest to sheet
+    flow."""
 
     def __init__(self, seed):
         chance = random.Random(seed)
@@ -81,7 +83,8 @@ class NewCase(ProgramTest):
         figures = report["figures"]
         width = yaml.safe_load(self.case.read_text())["domain"]["size"][1]
         asked = experiment.shields_number(figures["slope"], figures["depth"], width)
-        # The median by volume of some dozens of sizes drawn from 0.7 to 1.4 d has a standard error of 1.25 x 0.17/sqrt(60), 3 %.
+        # The median by volume of some dozens of sizes drawn from 0.7 to 1.4 d has a standard error of 1.25 x
+        # 0.17/sqrt(60), 3 %.
         self.assertAlmostEqual(asked / experiment.shields, 1.0, delta=0.08 if "--sieve" in experiment.words else 0.005)
         # Half a cell, and a bed that is some grains more or less high.
         self.assertAlmostEqual(figures["depth"], experiment.depth, delta=0.3 * experiment.diameter)
@@ -100,12 +103,14 @@ class NewCase(ProgramTest):
         self.assertFalse(self.case.exists())
 
     def test_what_is_missing_is_said(self):
-        for words, reason in [(["--shields", 0.05, "--depth", 0.03], "no size"),
-                              (["--diameter", 0.005, "--depth", 0.03], "two of --shields, --slope and --depth"),
-                              (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--slope", 0.1], "two of"),
-                              (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--density", 900], "make no bed"),
-                              (["--sieve", "1:2:3", "--shields", 0.05, "--depth", 0.03], "is no grading curve"),
-                              (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "slope")]:
+        for words, reason in [
+            (["--shields", 0.05, "--depth", 0.03], "no size"),
+            (["--diameter", 0.005, "--depth", 0.03], "two of --shields, --slope and --depth"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--slope", 0.1], "two of"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--density", 900], "make no bed"),
+            (["--sieve", "1:2:3", "--shields", 0.05, "--depth", 0.03], "is no grading curve"),
+            (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "slope"),
+        ]:
             result = self.new(*words)
             self.assertEqual(result.returncode, 2, words)
             self.assertIn(reason, result.stderr)

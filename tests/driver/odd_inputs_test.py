@@ -1,4 +1,5 @@
-"""Inputs that a program might swallow: names that are not UTF-8, counts beyond all memory, surfaces in another unit, beds of other shapes.
+"""Inputs that a program might swallow: names that are not UTF-8, counts beyond all memory, surfaces in another unit,
+beds of other shapes.
 
 Called by ctest: odd_inputs_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -17,7 +18,10 @@ import program
 from program import THALWEG, ProgramTest
 from stl_box import write_box
 
-BOX = "domain: {size: [0.02, 0.02, 0.02], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}"
+BOX = (
+    "domain: {size: [0.02, 0.02, 0.02], spacing: 1.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top:"
+    " free_slip}}"
+)
 GRAINS = f"""
 system: grains
 name: "grès, 砂"
@@ -45,7 +49,10 @@ class OddNames(ProgramTest):
     def test_a_folder_whose_name_is_not_utf8(self):
         odd = os.fsdecode(b"r\xfcn")   # Latin-1, as old disks have it
         self.run_well("run", "case.yaml", "--out", odd)
-        texts = {name: (self.folder / odd / name).read_bytes().decode("utf-8") for name in ("summary.json", "case.yaml", "run.log")}
+        texts = {
+            name: (self.folder / odd / name).read_bytes().decode("utf-8")
+            for name in ("summary.json", "case.yaml", "run.log")
+        }
         self.assertIn("r\ufffdn", json.loads(texts["summary.json"])["command"])
         self.assertIn("r\ufffdn", texts["run.log"])
         self.run_well("run", "case.yaml", "--restart", odd, "--until", "2.0e-3")
@@ -93,13 +100,17 @@ class Counts(ProgramTest):
                 self.assertEqual(result.returncode, 2, result.stderr)
                 self.assertIn("of memory, and this machine has", result.stderr)
                 self.assertIn("too many grains to be placed on this machine", result.stdout)
-        self.assert_refused("check", "case.yaml", "--set", big[0], "--set", big[1], "--set", "grains.0.count=2000000000", "--set",
-                            "grains.0.diameter={sizes: [4.0e-3, 5.0e-3], fractions: [0.5, 0.5]}",
-                            words=["grains.0.count = 2000000000", "at most 100000000 grains"])
+        self.assert_refused(
+            "check", "case.yaml", "--set", big[0], "--set", big[1], "--set", "grains.0.count=2000000000", "--set",
+            "grains.0.diameter={sizes: [4.0e-3, 5.0e-3], fractions: [0.5, 0.5]}",
+            words=["grains.0.count = 2000000000", "at most 100000000 grains"],
+        )
 
     def test_whole_numbers_that_an_int_does_not_hold(self):
         self.assert_refused("run", "case.yaml", "--layout", "65536,65536,1", words=["4294967296 rank"])
-        self.run_well("run", "case.yaml", "--set", "output.checkpoint.keep=4294967296", "--set", "output.checkpoint.every=2.5e-4")
+        self.run_well(
+            "run", "case.yaml", "--set", "output.checkpoint.keep=4294967296", "--set", "output.checkpoint.every=2.5e-4"
+        )
         # A step is 50 sub-steps. To keep 0, what is left of 2^32 as an int, would leave one.
         self.assertEqual(len(list((self.folder / "run/checkpoints").glob("step_*.h5"))), 4)
 
@@ -113,30 +124,44 @@ class Surfaces(ProgramTest):
         return [line for line in report.splitlines() if line.startswith("warning") and "solids." in line]
 
     def test_a_file_in_millimetres(self):
-        box, walls = ((5, 6, 4), (12, 14, 9)), ("--set", "domain.boundaries={x: no_slip, y: no_slip, bottom: no_slip, top: no_slip}",
-                                               "--set", "gravity.slope=0")
+        box, walls = ((5, 6, 4), (12, 14, 9)), (
+            "--set", "domain.boundaries={x: no_slip, y: no_slip, bottom: no_slip, top: no_slip}", "--set",
+            "gravity.slope=0",
+        )
         self.assertEqual(self.warnings_of(*box, "--set", "solids.0.scale=1.0e-3"), [])
-        self.assertTrue(any("millimetres, consider solids.0.scale: 0.001" in line for line in self.warnings_of(*box, *walls)))
-        self.assert_refused("check", "case.yaml", words=["solids.0.stl", "periodic box", "give scale: 0.001"])   # a thousand images
-        grains = GRAINS.replace("run:", "solids: [{stl: part.stl}]\nrun:").replace("x: periodic, y: periodic", "x: no_slip, y: no_slip")
+        self.assertTrue(
+            any("millimetres, consider solids.0.scale: 0.001" in line for line in self.warnings_of(*box, *walls))
+        )
+        self.assert_refused(
+            "check", "case.yaml", words=["solids.0.stl", "periodic box", "give scale: 0.001"]
+        )  # a thousand images
+        grains = GRAINS.replace("run:", "solids: [{stl: part.stl}]\nrun:").replace(
+            "x: periodic, y: periodic", "x: no_slip, y: no_slip"
+        )
         self.case.write_text(grains)   # all of the box is in the solid or beside it
         write_box(self.folder / "part.stl", (5, 6, 4), (12, 14, 9))
         self.assertIn("millimetres, consider solids.0.scale: 0.001", self.run_well("check", "case.yaml").stdout)
 
     def test_a_solid_outside_the_box_is_noticed(self):
         outside = self.warnings_of((0.002, 0.002, 0.021), (0.004, 0.004, 0.025))
-        self.assertTrue(any("solids.0 lies outside the box, from 0.021 to 0.025 m along z" in line for line in outside), outside)
+        self.assertTrue(
+            any("solids.0 lies outside the box, from 0.021 to 0.025 m along z" in line for line in outside), outside
+        )
 
 
 class Beds(ProgramTest):
-    CASE = GRAINS.replace(GRAINS[GRAINS.index("grains: ["):GRAINS.index("contact")], "grains: [{placement: {file: bed.h5}}]\n")
+    CASE = GRAINS.replace(
+        GRAINS[GRAINS.index("grains: [") : GRAINS.index("contact")], "grains: [{placement: {file: bed.h5}}]\n"
+    )
 
     def put_bed(self, change):
         """A bed as another program writes it: no checksums."""
         n = 2
-        columns = {"id": numpy.arange(n), "radius": numpy.full(n, 2e-3), "density": numpy.full(n, 2550.0),
-                   "position": numpy.array([[0.005, 0.005, 0.005], [0.015, 0.015, 0.015]]), "velocity": numpy.zeros((n, 3)),
-                   "angular_velocity": numpy.zeros((n, 3))}
+        columns = {
+            "id": numpy.arange(n), "radius": numpy.full(n, 2e-3), "density": numpy.full(n, 2550.0),
+            "position": numpy.array([[0.005, 0.005, 0.005], [0.015, 0.015, 0.015]]), "velocity": numpy.zeros((n, 3)),
+            "angular_velocity": numpy.zeros((n, 3)),
+        }
         with h5py.File(self.folder / "bed.h5", "w") as file:
             bed = file.create_group("bed")
             bed.attrs["format"] = numpy.bytes_("thalweg bed 1")
@@ -169,7 +194,9 @@ class Beds(ProgramTest):
 
         self.assert_bed_refused(anew("id", data=3), "grains/id", "a single value")
         self.assert_bed_refused(anew("radius", data=2e-3), "grains/radius")
-        self.assert_bed_refused(anew("id", shape=(1 << 60,), dtype="i8", chunks=(64,)), "announces 1152921504606846976 values")
+        self.assert_bed_refused(
+            anew("id", shape=(1 << 60,), dtype="i8", chunks=(64,)), "announces 1152921504606846976 values"
+        )
         self.assert_bed_refused(anew("position", data=numpy.zeros(6)), "grains/position", "6 values, but 2 x 3")
         self.assert_bed_refused(anew("density", data=numpy.full(2, 2550.0, "f4")), "float32, but float64")
         self.assert_bed_refused(anew("velocity"), "grains/velocity", "no such data")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What --solve prints, and every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the warning is
-gone, no other is new, and what the remedy does not name is as it was.
+"""What --solve prints, and every remedy that `thalweg check` prints, pasted as it is printed: the case is accepted, the
+warning is gone, no other is new, and what the remedy does not name is as it was.
 
 Called by ctest: remedies_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -91,8 +91,7 @@ MODEL_FLUID = (CASES / "model_fluid/case.yaml").read_text()
 VARIATIONS = [
     (GRAVEL, ["fluid.subgrid_model=none"], ["no subgrid model", "2 cells across", "too short", "too weak"]),
     (GRAVEL, ["domain.spacing=3.3333333333e-4"], ["cells a step"]),
-    (GRAVEL, ["coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"],
-     ["would overlap"]),
+    (GRAVEL, ["coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"], ["would overlap"]),
     (GRAVEL, ["domain.size.2=0.06", "grains.0.placement.pattern=uniform"], ["pattern: random"]),
     (GRAVEL, ["domain.spacing=4.0e-3", "coupling.fewest_cells_per_diameter=0.5"], ["domain.spacing: "]),
     (WATER, ["fluid.time_step=8.0e-5", "gravity.slope=0.03"], ["cells a step", "too weak"]),
@@ -101,65 +100,94 @@ VARIATIONS = [
     (WATER, ["gravity={magnitude: 9.8, slope: 0, mode: full}", "fluid.time_step=1.1e-4"], ["compresses it"]),
     (WATER, ["gravity.slope=0.3"], ["slides as a whole"]),
     (WATER, ["gravity={vector: [2.5, 0, -9.5]}"], ["slides as a whole"]),
-    (WATER, ["contact={normal_stiffness: 20, tangential_stiffness: 5.71, damping: 0.004}"], ["would overlap", "dry restitution"]),
-    (WATER, ["contact={normal_stiffness: 20000, tangential_stiffness: 5714, damping: 0.09}"], ["too weak", "dry restitution"]),
-    (WATER, ["contact={law: hertz_mindlin, youngs_modulus: 2.0e4, restitution: 0.9}"], ["would overlap"]),
+    (
+        WATER, ["contact={normal_stiffness: 20, tangential_stiffness: 5.71, damping: 0.004}"],
+        ["would overlap", "dry restitution"],
+    ),
+    (
+        WATER, ["contact={normal_stiffness: 20000, tangential_stiffness: 5714, damping: 0.09}"],
+        ["too weak", "dry restitution"],
+    ), (WATER, ["contact={law: hertz_mindlin, youngs_modulus: 2.0e4, restitution: 0.9}"], ["would overlap"]),
     (WATER, ["contact={law: hertz_mindlin, youngs_modulus: 1.0e7, restitution: 0.9}"], ["too weak"]),
-    (WATER, ["contact.walls={normal_stiffness: 1200}", "grains.0.contact={tangential_stiffness: 100}", "fluid.time_step=8.0e-5"],
-     ["too weak"]),
-    (WATER, ["contact={duration: 6.0e-3, restitution: 0.93}"], ["would overlap", "contact.duration: "]),
-    (WATER, ["contact={duration: {fluid_steps: 10}, damping: 0.09}"], ["too weak", "contact.duration: ", "dry restitution"]),
-    (WATER, ["contact={duration: 2.0e-4, tangential_stiffness: 3000, restitution: 0.93}", "fluid.time_step=8.0e-5"], ["too weak"]),
-    (WATER, ["contact={restitution: 0.93}", "domain.size=[0.04, 0.02, 0.2]", "grains.0.count=1000", "fluid.time_step=1.0e-4"],
-     ["too weak", "fluid.time_step: "]),
-    (WATER, ["contact={restitution: 0.93}"], []),
-    (WATER, ["grains.0.count=400"], ["placement.pattern: dense"]),
+    (
+        WATER,
+        [
+            "contact.walls={normal_stiffness: 1200}", "grains.0.contact={tangential_stiffness: 100}",
+            "fluid.time_step=8.0e-5",
+        ], ["too weak"],
+    ), (WATER, ["contact={duration: 6.0e-3, restitution: 0.93}"], ["would overlap", "contact.duration: "]),
+    (
+        WATER, ["contact={duration: {fluid_steps: 10}, damping: 0.09}"],
+        ["too weak", "contact.duration: ", "dry restitution"],
+    ),
+    (
+        WATER, ["contact={duration: 2.0e-4, tangential_stiffness: 3000, restitution: 0.93}", "fluid.time_step=8.0e-5"],
+        ["too weak"],
+    ),
+    (
+        WATER,
+        [
+            "contact={restitution: 0.93}", "domain.size=[0.04, 0.02, 0.2]", "grains.0.count=1000",
+            "fluid.time_step=1.0e-4",
+        ], ["too weak", "fluid.time_step: "],
+    ), (WATER, ["contact={restitution: 0.93}"], []), (WATER, ["grains.0.count=400"], ["placement.pattern: dense"]),
     (WATER, ["fluid.bulk_relaxation_time=100", "gravity.slope=0.02"], ["grows stripes"]),
     (WATER, ["fluid.subgrid_model=none"], ["no subgrid model"]),
-    (WATER, ["fluid.subgrid_model=none", "fluid.collision=trt", "fluid.bulk_relaxation_time=1"],
-     ["no subgrid model", "bulk relaxation time"]),
-    (WATER, ["fluid.smagorinsky_constant=0.27", "fluid.collision=bgk"], []),
+    (
+        WATER, ["fluid.subgrid_model=none", "fluid.collision=trt", "fluid.bulk_relaxation_time=1"],
+        ["no subgrid model", "bulk relaxation time"],
+    ), (WATER, ["fluid.smagorinsky_constant=0.27", "fluid.collision=bgk"], []),
     (WATER, ["run.until=0.5"], ["too short"]),
-    (WATER, ["run.until=0.1", "initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.05, roughness: 3.0e-4}}}"],
-     ["shorter than one turnover"]),
-    (WATER, ["initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.02, roughness: 3.0e-4}}}"], ["shear velocity"]),
-    (WATER, ["run.ramp=40"], ["Gravity rises"]),
-    (WATER, ["output.series.every=1.0e-5"], ["less than a step"]),
+    (
+        WATER,
+        [
+            "run.until=0.1",
+            "initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.05, roughness: 3.0e-4}}}",
+        ], ["shorter than one turnover"],
+    ),
+    (
+        WATER, ["initial={fluid: {log_profile: {bed_height: 0.0137, shear_velocity: 0.02, roughness: 3.0e-4}}}"],
+        ["shear velocity"],
+    ), (WATER, ["run.ramp=40"], ["Gravity rises"]), (WATER, ["output.series.every=1.0e-5"], ["less than a step"]),
     (WATER, ["domain.spacing=1.0e-3"], ["5 cells across"]),
     (WATER, ["domain.spacing=1.0e-3", "coupling.fewest_cells_per_diameter=1"], []),
     (WATER, ["domain.size=[0.061, 0.021, 0.041]", "domain.spacing=1.0e-3"], ["5 cells across"]),
-    (WATER, ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}}"], ["mean transport rate", "means of the fluid"]),
-    (WATER, ["grains.0.density=300"], ["no heavier"]),
-    (WATER, ["coupling={grain_steps_per_fluid_step: 1}", "contact.normal_stiffness=20000"], ["grain_steps_per_fluid_step: "]),
-    (WATER, ["gravity.slope=-0.01"], ["towards -x"]),
-    (SUSPENSION, [], []),
+    (
+        WATER, ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}}"],
+        ["mean transport rate", "means of the fluid"],
+    ), (WATER, ["grains.0.density=300"], ["no heavier"]),
+    (
+        WATER, ["coupling={grain_steps_per_fluid_step: 1}", "contact.normal_stiffness=20000"],
+        ["grain_steps_per_fluid_step: "],
+    ), (WATER, ["gravity.slope=-0.01"], ["towards -x"]), (SUSPENSION, [], []),
     (SUSPENSION, ["grains.0.density=450"], []),
     (SUSPENSION, ["coupling.grain_steps_per_fluid_step=1"], ["lubrication force"]),
     (SUSPENSION, ["fluid.collision=bgk"], ["In a dense bed"]),
     (SUSPENSION, ["fluid.time_step=1.0e-3", "run.until=10"], ["so large"]),
-    (SUSPENSION, ["fluid.smagorinsky_constant=0.27"], ["The flow is laminar"]),
-    (OIL, [], []),
+    (SUSPENSION, ["fluid.smagorinsky_constant=0.27"], ["The flow is laminar"]), (OIL, [], []),
     (SUSPENSION, ["fluid.subgrid_model=smagorinsky"], ["The flow is laminar"]),
-    (OIL, ["fluid.subgrid_model=smagorinsky", "fluid.smagorinsky_constant=0.1", "fluid.collision=bgk", "coupling.links=bouzidi"],
-     ["The flow is laminar"]),
-    (OIL, ["fluid.subgrid_model=qr", "fluid.collision=trt_at_bodies"], []),
-    (OIL, ["fluid.collision=bgk"], ["In a dense bed"]),
-    (OIL, ["fluid.time_step=1.0e-6"], ["at no velocity"]),
+    (
+        OIL,
+        [
+            "fluid.subgrid_model=smagorinsky", "fluid.smagorinsky_constant=0.1", "fluid.collision=bgk",
+            "coupling.links=bouzidi",
+        ], ["The flow is laminar"],
+    ), (OIL, ["fluid.subgrid_model=qr", "fluid.collision=trt_at_bodies"], []),
+    (OIL, ["fluid.collision=bgk"], ["In a dense bed"]), (OIL, ["fluid.time_step=1.0e-6"], ["at no velocity"]),
     (OIL, ["fluid.time_step=5.0e-6", "fluid.bulk_relaxation_time=1"], ["bulk relaxation time"]),
-    (OIL, ["fluid.time_step=1.0e-3"], ["so large"]),
-    (OIL, ["run.until=0.1"], ["too short"]),
-    (WATER, CLEAR, []),
+    (OIL, ["fluid.time_step=1.0e-3"], ["so large"]), (OIL, ["run.until=0.1"], ["too short"]), (WATER, CLEAR, []),
     (WATER, [*CLEAR, "fluid.time_step=1.0e-6"], ["has not been tested below"]),
-    (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]),
-    (WATER, [*CLEAR, "run.until=1"], ["too short"]),
+    (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]), (WATER, [*CLEAR, "run.until=1"], ["too short"]),
     (DRY, ["gravity.slope=0.6"], ["slides as a whole"]),
-    (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),   # tan(26 degrees)
+    (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),  # tan(26 degrees)
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["analysis={grain_profiles: {from: 0.1}}"], ["Averages begin before the flow has developed"]),
     (WATER, ["fluid.time_step=null"], []),
     (OIL, ["grains.0.placement.region={lower: [0, 0, 0], upper: [0.02, 0.01, 0.02]}", "run.until=0.01"], []),
-    (DRY, ["contact.normal_stiffness=30", "grains.1.contact.normal_stiffness=20", "run.time_step=2.8e-5"], ["would overlap"]),
-    (DRY, ["grains.0.placement.pattern=uniform", "grains.0.count=600"], ["fewer or smaller grains"]),
+    (
+        DRY, ["contact.normal_stiffness=30", "grains.1.contact.normal_stiffness=20", "run.time_step=2.8e-5"],
+        ["would overlap"],
+    ), (DRY, ["grains.0.placement.pattern=uniform", "grains.0.count=600"], ["fewer or smaller grains"]),
     (MODEL_FLUID, ["run.time_step=1.3e-3", "model_fluid.shields_number=2000"], ["a twentieth of a diameter"]),
 ]
 
@@ -219,8 +247,10 @@ class Remedies(ProgramTest):
         contact = (yaml.safe_load(path.read_text()).get("contact") or {}) | self.contact
         if "contact.normal_stiffness" in remedy and "contact.tangential_stiffness" in remedy:
             ratio = number_of(contact, "tangential_stiffness") / number_of(contact, "normal_stiffness")
-            self.assertAlmostEqual(float(remedy["contact.tangential_stiffness"]) / float(remedy["contact.normal_stiffness"]) / ratio,
-                                   1.0, 5)
+            self.assertAlmostEqual(
+                float(remedy["contact.tangential_stiffness"]) / float(remedy["contact.normal_stiffness"]) / ratio, 1.0,
+                5,
+            )
 
     def assert_the_rest_is_kept(self, remedy, before, after):
         if not any(key.startswith(("domain", "grains")) for key in remedy):

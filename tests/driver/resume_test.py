@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`thalweg run --resume`, which begins a run or goes on with it by what the folder holds, and `thalweg stop` of a run that is not
-going.
+"""`thalweg run --resume`, which begins a run or goes on with it by what the folder holds, and `thalweg stop` of a run
+that is not going.
 
 Called by ctest: resume_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -97,12 +97,16 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
         self.resume("--until", "0.01")
         (self.folder / "run/summary.json").unlink()
         shutil.rmtree(self.folder / "run/checkpoints")
-        self.assert_refused("run", self.case, "--out", "run", "--resume", words=["its checkpoints have been removed", "--overwrite"])
+        self.assert_refused(
+            "run", self.case, "--out", "run", "--resume", words=["its checkpoints have been removed", "--overwrite"]
+        )
         (self.folder / "run/bed.h5").unlink()   # as a system without grains has none
         self.assert_refused("run", self.case, "--out", "run", "--resume", words=["its checkpoints have been removed"])
 
     def test_what_is_no_run_or_cannot_go_on_is_refused(self):
-        self.assert_refused("run", self.case, "--out", "run", "--resume", "--set", "grains.0.density=-1", words=["grains.0.density"])
+        self.assert_refused(
+            "run", self.case, "--out", "run", "--resume", "--set", "grains.0.density=-1", words=["grains.0.density"]
+        )
         self.assert_refused("run", "nowhere.yaml", "--out", "run", "--resume", words=["nowhere.yaml"])
         self.assert_refused("run", self.case, "--resume", "--restart", "run", words=["--resume", "--restart"])
         self.assert_refused("run", self.case, "--resume", "--overwrite", words=["--resume", "--overwrite"])
@@ -128,15 +132,19 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
     def test_a_stop_between_two_runs_ends_the_next_once(self):
         self.unfinished()
         said = self.run_well("stop", "run").stdout
-        self.assertIn("run is not running now. A queued job that would resume it (thalweg run --resume) will end at once", said)
+        self.assertIn(
+            "run is not running now. A queued job that would resume it (thalweg run --resume) will end at once", said
+        )
         self.assertIn("rm run/stop", said)
         for ranks in (2, 0):
             if not (self.folder / "run/stop").exists():
                 self.run_well("stop", "run")
             stopped = self.thalweg("run", self.case, "--out", "run", "--resume", ranks=ranks)
             self.assertEqual(stopped.returncode, ASKED_TO_STOP, stopped.stderr)
-            self.assertIn("run: thalweg stop was given after the last run had ended, so this one does not start; the same "
-                          "command continues the run", stopped.stdout)
+            self.assertIn(
+                "run: thalweg stop was given after the last run had ended, so this one does not start; the same "
+                "command continues the run", stopped.stdout,
+            )
         self.assertIn("resuming", self.resume().stdout)
         self.assertTrue(self.summary("run")["finished"])
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)
@@ -147,8 +155,12 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
         words = shlex.quote(folder)
         first = self.run_well("run", self.case, "--out", folder, "--until", "0.01", ranks=2).stdout
         advice = [line for line in first.splitlines() if "thalweg stop" in line][0]
-        self.assertEqual(shlex.split(advice.split("to stop early: ")[1].split(" (after")[0]), ["thalweg", "stop", folder])
-        self.assert_refused("run", self.case, "--out", folder, words=["continue it with --restart 'tau[0.05] of bed, '\\''fein'\\'' "])
+        self.assertEqual(
+            shlex.split(advice.split("to stop early: ")[1].split(" (after")[0]), ["thalweg", "stop", folder]
+        )
+        self.assert_refused(
+            "run", self.case, "--out", folder, words=["continue it with --restart 'tau[0.05] of bed, '\\''fein'\\'' "]
+        )
         self.assertEqual(subprocess.run(f"{THALWEG} run {self.case} --restart {words}", shell=True, cwd=self.folder,
                                         stdout=subprocess.DEVNULL).returncode, 0)
         sweep = self.folder / "my sweep.yaml"

@@ -2,9 +2,9 @@
 
 Called by ctest: scalars_test.py THALWEG MPIEXEC [unittest arguments]
 
-A sweep reads values by python/thalweg/case_file.py and hands them to the program with --set. Each word stands at a text, a whole
-number, a real number and a truth value, once in the case file and once as a sweep hands it over: the program must refuse both or
-make the same of them, as the case.yaml of the run shows.
+A sweep reads values by python/thalweg/case_file.py and hands them to the program with --set. Each word stands at a
+text, a whole number, a real number and a truth value, once in the case file and once as a sweep hands it over: the
+program must refuse both or make the same of them, as the case.yaml of the run shows.
 """
 import sys
 import unittest
@@ -29,13 +29,17 @@ run: {until: 5.0e-6, time_step: 5.0e-6}
 """
 
 # Sexagesimal, octal and hexadecimal numbers, dates, underlines and yes or no are YAML 1.1.
-NUMBERS = ["010", "-010", "08", "+3", "0o17", "0x10", "1_000", "1:30", "190:20:30", "1e3", "1e-3", "1.5E+3", "1.", ".5", "1e400",
-           "1e-400", "99999999999999999999", ".inf", "inf", ".nan", "nan", "'010'", '"1e-3"', "!!int 7", "!!str 7", "1 2"]
+NUMBERS = [
+    "010", "-010", "08", "+3", "0o17", "0x10", "1_000", "1:30", "190:20:30", "1e3", "1e-3", "1.5E+3", "1.", ".5",
+    "1e400", "1e-400", "99999999999999999999", ".inf", "inf", ".nan", "nan", "'010'", '"1e-3"', "!!int 7", "!!str 7",
+    "1 2",
+]
 TRUTHS = ["no", "yes", "on", "off", "y", "true", "True", "TRUE", "'true'", "false", "1"]
 TEXTS = ["010", "1e-3", "1:30", "no", "true", "2026-01-01", "=", "<<", "'a: b'", "é", "null", "~", "Null"]
 WORDS = sorted({*NUMBERS, *TRUTHS, *TEXTS})
 
-# Each key with what stands there in the case and the words that are tried; `seed` takes whole numbers, `density` real ones.
+# Each key with what stands there in the case and the words that are tried; `seed` takes whole numbers, `density` real
+# ones.
 KEYS = {"name": ("name: words", TEXTS), "grains.0.placement.seed": ("seed: 1", NUMBERS),
         "grains.0.density": ("density: 2550", NUMBERS), "grains.0.fixed": ("fixed: false", TRUTHS)}
 
@@ -72,12 +76,16 @@ class Scalars(ProgramTest):
         self.assertGreater(taken, 20)
 
     def test_what_words_are(self):
-        read = {word: yaml.load(f"a: {word}", CaseLoader)["a"] for word in WORDS}   # as YAML 1.2 (section 10.3) has them, if decimal
+        read = {
+            word: yaml.load(f"a: {word}", CaseLoader)["a"] for word in WORDS
+        }  # as YAML 1.2 (section 10.3) has them, if decimal
         self.assertEqual({word: read[word] for word in ("010", "-010", "08", "+3", "1e3", ".5", "1e-3")},
                          {"010": 10, "-010": -10, "08": 8, "+3": 3, "1e3": 1000.0, ".5": 0.5, "1e-3": 0.001})
         self.assertEqual({word: read[word] for word in ("true", "false", "null", "~")},
                          {"true": True, "false": False, "null": None, "~": None})
-        for word in ("0x10", "0o17", "1_000", "1:30", "no", "yes", "on", "True", "2026-01-01", "=", "<<", ".inf", "inf", "1e400"):
+        for word in (
+            "0x10", "0o17", "1_000", "1:30", "no", "yes", "on", "True", "2026-01-01", "=", "<<", ".inf", "inf", "1e400",
+        ):
             self.assertEqual(read[word], word)
         for word in ("'010'", "!!int 7"):
             self.assertIsInstance(read[word], str)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The JSON schema that `thalweg defaults --schema` prints agrees with the reader: it accepts every case of the repository and the
-documented cases of every system, and what it refuses the reader refuses, too.
+"""The JSON schema that `thalweg defaults --schema` prints agrees with the reader: it accepts every case of the
+repository and the documented cases of every system, and what it refuses the reader refuses, too.
 
 Called by ctest: schema_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -47,7 +47,9 @@ class Schema(ProgramTest):
         return [f"{list(error.absolute_path)}: {error.message[:200]}" for error in self.validator.iter_errors(case)]
 
     def test_it_accepts_every_case(self):
-        paths = [path for folder in ("cases", "benchmarks/validation") for path in sorted((ROOT / folder).rglob("*.yaml"))]
+        paths = [
+            path for folder in ("cases", "benchmarks/validation") for path in sorted((ROOT / folder).rglob("*.yaml"))
+        ]
         accepted = 0
         for path in paths:
             case = read_case(path)
@@ -87,8 +89,10 @@ class Schema(ProgramTest):
 
     def test_ranges_and_words(self):
         base = yaml.safe_load((ROOT / "cases/quickstart/case.yaml").read_text())
-        for path, value in [(("domain", "spacing"), -1.0), (("fluid", "collision"), "brk"), (("fluid", "density"), "water"),
-                            (("grains", 0, "count"), 1.5), (("domain", "boundaries", "y"), "wet"), (("contact", "restitution"), 2)]:
+        for path, value in [
+            (("domain", "spacing"), -1.0), (("fluid", "collision"), "brk"), (("fluid", "density"), "water"),
+            (("grains", 0, "count"), 1.5), (("domain", "boundaries", "y"), "wet"), (("contact", "restitution"), 2),
+        ]:
             changed = copy.deepcopy(base)
             at(changed, path[:-1])[path[-1]] = value
             with self.subTest(path=path):

@@ -46,15 +46,19 @@ class Sweep(ProgramTest):
             return list(csv.DictReader(file))
 
     def test_one_table_of_all_runs_and_none_is_repeated(self):
-        sweep = self.write("vary: {gravity.slope: [0.1, 0.6], contact.wall_friction: {from: 0.2, to: 0.4, count: 2}}\n"
-                           "columns: [grain_energy.grain_momentum_x, figures.largest_grain_speed, simulated_time, gone.bye]\n")
+        sweep = self.write(
+            "vary: {gravity.slope: [0.1, 0.6], contact.wall_friction: {from: 0.2, to: 0.4, count: 2}}\n"
+            "columns: [grain_energy.grain_momentum_x, figures.largest_grain_speed, simulated_time, gone.bye]\n"
+        )
         result = self.run_well("sweep", sweep)
         self.assertIn("4 of 4 runs done", result.stdout)
         self.assertIn("no run has the number gone.bye", result.stderr)
         rows = self.table("sweep/runs.csv")
         self.assertAlmostEqual(float(rows[0]["simulated_time [s]"]), 0.2, delta=3e-4)
-        self.assertEqual([(row["gravity.slope [1]"], row["contact.wall_friction [1]"], row["state"]) for row in rows],
-                         [("0.1", "0.2", "done"), ("0.1", "0.4", "done"), ("0.6", "0.2", "done"), ("0.6", "0.4", "done")])
+        self.assertEqual(
+            [(row["gravity.slope [1]"], row["contact.wall_friction [1]"], row["state"]) for row in rows],
+            [("0.1", "0.2", "done"), ("0.1", "0.4", "done"), ("0.6", "0.2", "done"), ("0.6", "0.4", "done")],
+        )
         speeds = [float(row["figures.largest_grain_speed [m/s]"]) for row in rows]
         # Down a slope S with friction mu: t g (sin - mu cos), or rest.
         for speed, slope, friction in zip(speeds, (0.1, 0.1, 0.6, 0.6), (0.2, 0.4, 0.2, 0.4)):
@@ -114,7 +118,9 @@ class Sweep(ProgramTest):
 
     def test_a_signal_stops_it_in_good_order(self):
         sweep = self.write("set: {run.until: 100.0}\nvary: {gravity.slope: [0.5, 0.6, 0.7]}\n")
-        going = subprocess.Popen([THALWEG, "sweep", sweep, "--jobs", "1"], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        going = subprocess.Popen(
+            [THALWEG, "sweep", sweep, "--jobs", "1"], cwd=self.folder, stdout=subprocess.PIPE, text=True
+        )
         log = self.folder / "sweep/runs/slope_0.5/run.log"
         deadline = time.monotonic() + 60.0
         while not log.exists() and time.monotonic() < deadline:
@@ -151,8 +157,10 @@ class Sweep(ProgramTest):
         self.assertEqual({row["state"] for row in self.table("sweep/runs.csv")}, {"done"})
 
     def test_a_run_without_the_figure_of_a_bisection_has_failed(self):
-        sweep = self.write("set: {analysis.transport_rate: {from: 1}}\n"
-                           "bisect: {key: gravity.slope, from: 0.1, to: 0.5, width: 0.2, holds: transport_rate.q_s_mean > 0}\n")
+        sweep = self.write(
+            "set: {analysis.transport_rate: {from: 1}}\n"
+            "bisect: {key: gravity.slope, from: 0.1, to: 0.5, width: 0.2, holds: transport_rate.q_s_mean > 0}\n"
+        )
         said = self.thalweg("sweep", sweep)
         self.assertEqual(said.returncode, 1, said.stderr)
         self.assertIn("of the runs have failed", said.stderr)
@@ -167,7 +175,9 @@ class Sweep(ProgramTest):
         self.assertFalse((self.folder / "sweep/runs").exists())
 
     def test_a_refused_bisection_can_be_corrected(self):
-        bisect = "bisect: {key: gravity.slope, from: 0.1, to: 0.9, width: 0.5, holds: figures.largest_grain_speed > 0.01}\n"
+        bisect = (
+            "bisect: {key: gravity.slope, from: 0.1, to: 0.9, width: 0.5, holds: figures.largest_grain_speed > 0.01}\n"
+        )
         sweep = self.write("set: {contact.wal_friction: 0.3}\n" + bisect)
         self.assertEqual(self.thalweg("sweep", sweep).returncode, 1)
         self.write("set: {contact.wall_friction: 0.3}\n" + bisect)
@@ -188,10 +198,16 @@ class Sweep(ProgramTest):
         commands.mkdir()
         (commands / "scontrol").write_text(f'#!/bin/sh\necho "$*" >> "{asked}"\n')
         (commands / "scontrol").chmod(0o755)
-        environment = os.environ | {"PATH": f"{commands}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": "1", "SLURM_JOB_ID": "17"}
-        for sent, code, queued in ((signal.SIGUSR1, 0, True), (signal.SIGTERM, -signal.SIGTERM, False), (None, 0, False)):
+        environment = os.environ | {
+            "PATH": f"{commands}:{os.environ['PATH']}", "SLURM_ARRAY_TASK_ID": "1", "SLURM_JOB_ID": "17",
+        }
+        for sent, code, queued in (
+            (signal.SIGUSR1, 0, True), (signal.SIGTERM, -signal.SIGTERM, False), (None, 0, False),
+        ):
             (self.folder / "sweep/runs/slope_0.6/run.log").unlink(missing_ok=True)
-            task = subprocess.Popen(["bash", job], cwd=self.folder, env=environment, stdout=subprocess.DEVNULL, start_new_session=True)
+            task = subprocess.Popen(
+                ["bash", job], cwd=self.folder, env=environment, stdout=subprocess.DEVNULL, start_new_session=True
+            )
             if sent is not None:
                 self.wait_for_log("sweep/runs/slope_0.6", task)
             if sent == signal.SIGTERM:   # as scancel does to all processes of a job
@@ -222,8 +238,10 @@ class Sweep(ProgramTest):
         launcher.chmod(0o755)
         run = folder / "some runs/runs/slope_0.5-name_it_s__a___b"
         for _ in range(2):
-            result = subprocess.run([THALWEG, "sweep", folder / "some runs.yaml"], capture_output=True, text=True, cwd=self.folder,
-                                    env=os.environ | {"THALWEG_LAUNCH": f"'{launcher}' --mpi=pmix"}, timeout=120)
+            result = subprocess.run(
+                [THALWEG, "sweep", folder / "some runs.yaml"], capture_output=True, text=True, cwd=self.folder,
+                env=os.environ | {"THALWEG_LAUNCH": f"'{launcher}' --mpi=pmix"}, timeout=120,
+            )
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             self.assertTrue((self.folder / "launched").read_text().startswith(f"--mpi=pmix -n 2 {THALWEG} run "))
             self.assertTrue(json.loads((run / "summary.json").read_text())["finished"])
@@ -236,12 +254,16 @@ class Sweep(ProgramTest):
         teller.chmod(0o755)
         own = sorted(os.sched_getaffinity(0))
         for cores in {1, min(2, len(own))}:
-            said = subprocess.run([THALWEG, "sweep"], env=os.environ | {"THALWEG_PYTHON": str(teller)}, capture_output=True, text=True,
-                                  preexec_fn=lambda: os.sched_setaffinity(0, own[:cores])).stdout.split()
+            said = subprocess.run(
+                [THALWEG, "sweep"], env=os.environ | {"THALWEG_PYTHON": str(teller)}, capture_output=True, text=True,
+                preexec_fn=lambda: os.sched_setaffinity(0, own[:cores]),
+            ).stdout.split()
             self.assertEqual(int(said[0]), cores)
             scripts = Path(__file__).resolve().parents[2] / "scripts"
-            by_script = subprocess.run(["bash", "-euc", f"source {scripts}/mpi_environment; available_cores"], capture_output=True,
-                                       text=True, preexec_fn=lambda: os.sched_setaffinity(0, own[:cores])).stdout
+            by_script = subprocess.run(
+                ["bash", "-euc", f"source {scripts}/mpi_environment; available_cores"], capture_output=True, text=True,
+                preexec_fn=lambda: os.sched_setaffinity(0, own[:cores]),
+            ).stdout
             self.assertEqual(int(by_script), cores)
             self.assertGreater(float(said[1]), 1e7)
 
@@ -251,11 +273,19 @@ class Sweep(ProgramTest):
         amount, unit = said[said.index("memory "):].split()[2:4]
         needed = float(amount) * {"MB": 1e6, "GB": 1e9}[unit]
         package = Path(__file__).resolve().parents[2] / "python"
-        result = subprocess.run([sys.executable, "-m", "thalweg", "sweep", sweep], cwd=self.folder, capture_output=True, text=True, timeout=120,
-                                env=os.environ | {"PYTHONPATH": str(package), "THALWEG_PROGRAM": THALWEG, "THALWEG_CORES": "3",
-                                                  "THALWEG_MEMORY": f"{1.9 * needed:.0f}"})
+        result = subprocess.run(
+            [sys.executable, "-m", "thalweg", "sweep", sweep], cwd=self.folder, capture_output=True, text=True,
+            timeout=120,
+            env=os.environ
+            | {
+                "PYTHONPATH": str(package), "THALWEG_PROGRAM": THALWEG, "THALWEG_CORES": "3",
+                "THALWEG_MEMORY": f"{1.9 * needed:.0f}",
+            },
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn(f"1 run at a time, though there are cores for 3: each takes about {needed / 1e9:.3g} GB", result.stdout)
+        self.assertIn(
+            f"1 run at a time, though there are cores for 3: each takes about {needed / 1e9:.3g} GB", result.stdout
+        )
         self.assertNotIn("2 going", result.stdout)
         self.assertIn("3 of 3 runs done", result.stdout)
 
@@ -279,19 +309,27 @@ class Sweep(ProgramTest):
         for said in (planned, done):
             said = " ".join(said.split())
             self.assertEqual(said.count(text), 1, said)
-            self.assertIn("warning: every_1e-07, every_2e-07 (the numbers are those of every_1e-07): output.series.every", said)
+            self.assertIn(
+                "warning: every_1e-07, every_2e-07 (the numbers are those of every_1e-07): output.series.every", said
+            )
         rows = {row["run"]: row["warnings"] for row in self.table("sweep/runs.csv")}
         self.assertEqual(rows, {"every_1e-07": "1", "every_2e-07": "1", "every_0.0005": "0"})
 
     def test_tables_in_grain_units_do_not_name_those_of_si(self):
         model_fluid = Path(__file__).resolve().parents[2] / "cases/model_fluid/case.yaml"
-        (self.folder / "grain.yaml").write_text(f"case: {model_fluid}\nset: {{run.until: 0.1, run.until_at_rest: null}}\n"
-                                                "vary: {model_fluid.shields_number: [0.1]}\n"
-                                                "columns: [simulated_time, figures.largest_grain_speed]\n")
+        (self.folder / "grain.yaml").write_text(
+            f"case: {model_fluid}\nset: {{run.until: 0.1, run.until_at_rest: null}}\n"
+            "vary: {model_fluid.shields_number: [0.1]}\n"
+            "columns: [simulated_time, figures.largest_grain_speed]\n"
+        )
         self.run_well("sweep", "grain.yaml")
-        self.assertEqual(list(self.table("grain/runs.csv")[0]),
-                         ["run", "run.until", "run.until_at_rest", "model_fluid.shields_number [1]", "state", "warnings",
-                          "version", "wall_time [s]", "simulated_time", "figures.largest_grain_speed", "failure"])
+        self.assertEqual(
+            list(self.table("grain/runs.csv")[0]),
+            [
+                "run", "run.until", "run.until_at_rest", "model_fluid.shields_number [1]", "state", "warnings",
+                "version", "wall_time [s]", "simulated_time", "figures.largest_grain_speed", "failure",
+            ],
+        )
 
     def test_refusals(self):
         self.assert_refused("sweep", self.write("", "small.yaml"), "--jobs", "0", words=["--jobs 0"])
@@ -299,8 +337,10 @@ class Sweep(ProgramTest):
         self.assert_refused("sweep", "dated.yaml", words=["dated.yaml", "UTF-8"])
 
         self.assert_refused("sweep", "gone.yaml", words=["gone.yaml", "No such file"])
-        self.assert_refused("sweep", self.write("vary: {contact.wall_friction: 1}\n"), words=["sweep.yaml", "contact.wall_friction",
-                                                                                          "list of values"])
+        self.assert_refused(
+            "sweep", self.write("vary: {contact.wall_friction: 1}\n"),
+            words=["sweep.yaml", "contact.wall_friction", "list of values"],
+        )
         sweep = self.write("set: {run.until: 0.01}\nvary: {contact.wall_friction: [0.2]}\n")
         self.run_well("sweep", sweep)
         self.case.write_text(CASE.replace("restitution: 0.5", "restitution: 0.6"))

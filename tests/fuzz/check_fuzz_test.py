@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Cases as people mistype them: `thalweg check` of mutations of every shipped case either reports or refuses in one sentence.
+"""Cases as people mistype them: `thalweg check` of mutations of every shipped case either reports or refuses in one
+sentence.
 
-Called by ctest: check_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No crash, no
-hang, and what is refused names the file; the first ten failures are printed with the case that shows them.
+Called by ctest: check_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No
+crash, no hang, and what is refused names the file; the first ten failures are printed with the case that shows them.
 """
 import random
 import subprocess

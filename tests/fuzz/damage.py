@@ -8,7 +8,8 @@ import h5py
 import numpy
 
 
-# ---- any file ------------------------------------------------------------------------------------------------------------
+# ---- any file
+# ------------------------------------------------------------------------------------------------------------
 
 def cut(data, chance):
     return data[:chance.randrange(len(data))]
@@ -50,14 +51,19 @@ def appended(data, chance):
 
 
 def other_file(data, chance):
-    return chance.choice([b"\x89PNG\r\n\x1a\n" + chance.randbytes(200), b"\x7fELF" + bytes(300), b"PK\x03\x04" + chance.randbytes(99),
-                          b"<html><body>404</body></html>\n", chance.randbytes(1000)])
+    return chance.choice(
+        [
+            b"\x89PNG\r\n\x1a\n" + chance.randbytes(200), b"\x7fELF" + bytes(300), b"PK\x03\x04" + chance.randbytes(99),
+            b"<html><body>404</body></html>\n", chance.randbytes(1000),
+        ]
+    )
 
 
 ANY = [cut, cut, cut_a_little, flip, flip, flip, flip_in_head, noise, zeros, nothing, appended, other_file]
 
 
-# ---- text ----------------------------------------------------------------------------------------------------------------
+# ---- text
+# ----------------------------------------------------------------------------------------------------------------
 
 def inserted(name, *patterns):
     def way(data, chance):
@@ -76,17 +82,24 @@ def line_of(name, change):
     return way
 
 
-odd_byte = inserted("odd_byte", b"\0", b"\x04", b"\x1a", b"\x7f", b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xf5\x80\x80\x80", b"\x1b[2J")
+odd_byte = inserted(
+    "odd_byte", b"\0", b"\x04", b"\x1a", b"\x7f", b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xf5\x80\x80\x80", b"\x1b[2J"
+)
 tab = inserted("tab", b"\t", b"\t\t")
 carriage_return = inserted("carriage_return", b"\r")
-bracket = inserted("bracket", b"[", b"]", b"{", b"}", b"\"", b"'", b"&", b"*", b"!", b"|", b">", b"%", b"@", b"`", b": ", b"- ", b"#")
+bracket = inserted(
+    "bracket", b"[", b"]", b"{", b"}", b"\"", b"'", b"&", b"*", b"!", b"|", b">", b"%", b"@", b"`", b": ", b"- ", b"#"
+)
 byte_order_mark = inserted("byte_order_mark", b"\xef\xbb\xbf")
 line_lost = line_of("line_lost", lambda line: [])
 line_twice = line_of("line_twice", lambda line: [line, line])
 tabs_for_spaces = line_of("tabs_for_spaces", lambda line: [line.replace(b"  ", b"\t")])
 indented = line_of("indented", lambda line: [b" " + line])
 
-TEXT = [odd_byte, odd_byte, tab, carriage_return, bracket, bracket, byte_order_mark, line_lost, line_twice, tabs_for_spaces, indented]
+TEXT = [
+    odd_byte, odd_byte, tab, carriage_return, bracket, bracket, byte_order_mark, line_lost, line_twice, tabs_for_spaces,
+    indented,
+]
 
 
 def utf_16(data, chance):
@@ -129,14 +142,18 @@ def long_word(data, chance):
     return data + b"\nname: " + b"x" * 3000000 + b"\n"
 
 
-YAML = TEXT + [utf_16, deep(b"[", b"]"), deep(b"{a: ", b"}"), deep(b"- ", b""), deep_indentation, laughs, contains_itself,
-               second_document, many_keys, long_word]
+YAML = TEXT + [
+    utf_16, deep(b"[", b"]"), deep(b"{a: ", b"}"), deep(b"- ", b""), deep_indentation, laughs, contains_itself,
+    second_document, many_keys, long_word,
+]
 
 
-# ---- HDF5 ----------------------------------------------------------------------------------------------------------------
+# ---- HDF5
+# ----------------------------------------------------------------------------------------------------------------
 
 def in_hdf5(change):
-    """change(file, name of a dataset, chance); its name and attributes but the checksum are kept where it makes a new one."""
+    """change(file, name of a dataset, chance); its name and attributes but the checksum are kept where it makes a new
+    one."""
     def way(data, chance):
         memory = io.BytesIO(data)
         with h5py.File(memory, "r+") as file:
@@ -187,7 +204,12 @@ def one_row_more(file, name, chance):
 @in_hdf5
 def other_rank(file, name, chance):
     values = file[name][()]
-    replaced(file, name, data=values.reshape(values.shape + (1,)) if chance.random() < 0.5 else values.ravel()[:1].reshape(1, 1, 1, 1, 1))
+    replaced(
+        file, name,
+        data=values.reshape(values.shape + (1,))
+        if chance.random() < 0.5
+        else values.ravel()[:1].reshape(1, 1, 1, 1, 1),
+    )
 
 
 @in_hdf5
@@ -203,7 +225,9 @@ def huge(file, name, chance):
     values = file[name]
     rows = chance.choice([1 << 31, 1 << 40, 1 << 60])
     shape, kind = (rows,) + values.shape[1:], values.dtype
-    replaced(file, name, shape=shape, dtype=kind, chunks=(1024,) + values.shape[1:], maxshape=(None,) + values.shape[1:])
+    replaced(
+        file, name, shape=shape, dtype=kind, chunks=(1024,) + values.shape[1:], maxshape=(None,) + values.shape[1:]
+    )
 
 
 @in_hdf5
@@ -212,7 +236,9 @@ def huge_everywhere(file, name, chance):
     for other in datasets_of(file):
         if other.split("/")[0] == name.split("/")[0]:
             values = file[other]
-            replaced(file, other, shape=(1 << 40,) + values.shape[1:], dtype=values.dtype, chunks=(64,) + values.shape[1:])
+            replaced(
+                file, other, shape=(1 << 40,) + values.shape[1:], dtype=values.dtype, chunks=(64,) + values.shape[1:]
+            )
 
 
 @in_hdf5
@@ -259,8 +285,10 @@ def attribute_of_another_type(file, name, chance):
         holder.attrs[attribute] = chance.choice(["text of any length", 7, [1, 2, 3]])
 
 
-HDF5 = [scalar, missing, group, no_rows, one_row_more, other_rank, other_type, huge, huge_everywhere, not_written, odd_value, odd_value,
-        odd_value_anew, odd_value_anew, link_in_a_circle, attribute_lost, attribute_of_another_type]
+HDF5 = [
+    scalar, missing, group, no_rows, one_row_more, other_rank, other_type, huge, huge_everywhere, not_written,
+    odd_value, odd_value, odd_value_anew, odd_value_anew, link_in_a_circle, attribute_lost, attribute_of_another_type,
+]
 
 
 def contents_of_hdf5(data):

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Damaged files: cases, surfaces, beds, checkpoints, records and what else a restart reads.
 
-Called by ctest: files_fuzz_test.py THALWEG NUMBER [SEED]. Each of NUMBER damaged files (damage.py) is given to the program, which
-must end within ten seconds of a core and a gigabyte: it refuses the file in one sentence with its name (exit code 2), or ends well (0) with
-the results of the whole file. So nothing that a damaged file means is taken in silence. The exceptions: a case in which a digit
-or a line is another is another case; a restart reads only what it goes on with of the parts of a record; a bed without
-checksums may have grains so fast that the run breaks down (1).
+Called by ctest: files_fuzz_test.py THALWEG NUMBER [SEED]. Each of NUMBER damaged files (damage.py) is given to the
+program, which must end within ten seconds of a core and a gigabyte: it refuses the file in one sentence with its name
+(exit code 2), or ends well (0) with the results of the whole file. So nothing that a damaged file means is taken in
+silence. The exceptions: a case in which a digit or a line is another is another case; a restart reads only what it goes
+on with of the parts of a record; a bed without checksums may have grains so fast that the run breaks down (1).
 """
 import random
 import re
@@ -65,12 +65,18 @@ class Answer:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.late = False
         try:
-            done = subprocess.run([THALWEG, *map(str, arguments)], capture_output=True, timeout=LATE, preexec_fn=limit_memory)
-            self.code, self.out, self.err = done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+            done = subprocess.run(
+                [THALWEG, *map(str, arguments)], capture_output=True, timeout=LATE, preexec_fn=limit_memory
+            )
+            self.code, self.out, self.err = (
+                done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace"),
+            )
         except subprocess.TimeoutExpired:
             self.code, self.out, self.err, self.late = None, "", "", True
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime   # of a core: others work here, too
+        self.seconds = (
+            after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        )  # of a core: others work here, too
         self.memory = after.ru_maxrss * 1024 if after.ru_maxrss > before.ru_maxrss else 0    # of the largest so far
 
     def complaint(self, name):
@@ -93,7 +99,8 @@ def limit_memory():
 
 
 class Kind:
-    """A kind of file: name, bytes and how they are damaged. try_with() gives the complaint about the program's answer."""
+    """A kind of file: name, bytes and how they are damaged. try_with() gives the complaint about the program's
+    answer."""
 
     def __init__(self, folder):
         self.folder = folder / type(self).__name__.lower()
@@ -161,9 +168,15 @@ class BinarySurface(Surface):
     ways = damage.ANY
 
     def bytes_of(self, text):
-        corners = [float(word) for word in re.findall(r"(?<=\s)[-\d.e]+(?=\s)", " ".join(re.findall("vertex.*\n", text)))]
+        corners = [
+            float(word) for word in re.findall(r"(?<=\s)[-\d.e]+(?=\s)", " ".join(re.findall("vertex.*\n", text)))
+        ]
         facets = [corners[n:n + 9] for n in range(0, len(corners), 9)]
-        return bytes(80) + struct.pack("<I", len(facets)) + b"".join(struct.pack("<12fH", 0, 0, 0, *facet, 0) for facet in facets)
+        return (
+            bytes(80)
+            + struct.pack("<I", len(facets))
+            + b"".join(struct.pack("<12fH", 0, 0, 0, *facet, 0) for facet in facets)
+        )
 
     def corners(self, data):
         return sorted(data[84 + 50 * n + 12:84 + 50 * n + 48] for n in range((len(data) - 84) // 50))
@@ -189,11 +202,15 @@ class State(Kind):
             return wrong
         if answer.code == 2 or results == self.results:
             return ""
-        state = {name: value for name, value in (results or {}).items() if name.startswith(("grains", "fluid", "system"))}
+        state = {
+            name: value for name, value in (results or {}).items() if name.startswith(("grains", "fluid", "system"))
+        }
         said = "count from" in answer.out   # observers whose sums are lost
         if said and state and all(self.results[name] == value for name, value in state.items()):
             return ""
-        return "other results: " + ", ".join(name for name in self.results if (results or {}).get(name) != self.results[name])
+        return "other results: " + ", ".join(
+            name for name in self.results if (results or {}).get(name) != self.results[name]
+        )
 
     def arguments(self):
         return []
@@ -249,9 +266,16 @@ class RunFile(Kind):
         self.case = self.write("case.yaml", small())
         answer = Answer("run", self.case, "--out", self.folder / "first")
         assert answer.code == 0, answer.err
-        self.files = [path.relative_to(self.folder / "first") for path in (self.folder / "first").rglob("*")
-                      if path.is_file() and path.suffix in (".csv", ".pvd", ".json", ".yaml") or path.name in ("latest", "run.log")
-                      or path.suffix == ".h5" and path.name != "bed.h5" and path.parent.name != "checkpoints"]
+        self.files = [
+            path.relative_to(self.folder / "first")
+            for path in (self.folder / "first").rglob("*")
+            if path.is_file()
+            and path.suffix in (".csv", ".pvd", ".json", ".yaml")
+            or path.name in ("latest", "run.log")
+            or path.suffix == ".h5"
+            and path.name != "bed.h5"
+            and path.parent.name != "checkpoints"
+        ]
         self.chance = random.Random(SEED)
 
     @property
@@ -278,7 +302,9 @@ def main():
     chance, failures = random.Random(SEED), []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        kinds = [kind(folder) for kind in (CaseFile, TextSurface, BinarySurface, Bed, Checkpoint, InitialState, RunFile)]
+        kinds = [
+            kind(folder) for kind in (CaseFile, TextSurface, BinarySurface, Bed, Checkpoint, InitialState, RunFile)
+        ]
         answers = 0
         for number in range(NUMBER):
             kind = kinds[number % len(kinds)]

@@ -1,5 +1,5 @@
-"""Mutations of cases: one key removed, misspelt, of another type, negative, zero, huge, tiny, not a number, infinite, off by a
-thousand, a list, or given twice."""
+"""Mutations of cases: one key removed, misspelt, of another type, negative, zero, huge, tiny, not a number, infinite,
+off by a thousand, a list, or given twice."""
 import copy
 import resource
 import sys

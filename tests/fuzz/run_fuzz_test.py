@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Cases as people mistype them: `thalweg check` and `thalweg run` are of one opinion about every mutation of small cases.
+"""Cases as people mistype them: `thalweg check` and `thalweg run` are of one opinion about every mutation of small
+cases.
 
-Called by ctest: run_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. The mutations are those of check_fuzz_test.py. A case
-that check refuses is refused by run in the same words, and nothing is written; a case that check reports on runs for two
-steps, or breaks down in the run (exit code 1, one sentence and a summary), but is not refused. No crash, no hang; mutations
-of sizes that would take more memory than a test has are not run, and those that would take more time only begin (--walltime).
-No message begins with a name that is missing. The first ten failures are printed with the case.
+Called by ctest: run_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. The mutations are those of check_fuzz_test.py. A
+case that check refuses is refused by run in the same words, and nothing is written; a case that check reports on runs
+for two steps, or breaks down in the run (exit code 1, one sentence and a summary), but is not refused. No crash, no
+hang; mutations of sizes that would take more memory than a test has are not run, and those that would take more time
+only begin (--walltime). No message begins with a name that is missing. The first ten failures are printed with the
+case.
 """
 import random
 import re
@@ -98,7 +100,9 @@ CASES = [yaml.load(text, CaseLoader) for text in (FLUID, RESOLVED, GRAINS, MODEL
 
 
 def thalweg(*arguments):
-    return subprocess.run([THALWEG, *arguments], capture_output=True, text=True, timeout=SECONDS, preexec_fn=limit_memory)
+    return subprocess.run(
+        [THALWEG, *arguments], capture_output=True, text=True, timeout=SECONDS, preexec_fn=limit_memory
+    )
 
 
 def said(result):

@@ -24,13 +24,17 @@ class HelpFiles(unittest.TestCase):
         words = ["thalweg", *words]
         script = (f"source {self.folder / 'thalweg.bash'}; COMP_WORDS=({' '.join(repr(word) for word in words)}); "
                   f"COMP_CWORD={len(words) - 1}; _thalweg; printf '%s\\n' \"${{COMPREPLY[@]}}\"")
-        return subprocess.run(["bash", "-euc", script], check=True, capture_output=True, encoding="utf-8", cwd=self.folder).stdout.split()
+        return subprocess.run(
+            ["bash", "-euc", script], check=True, capture_output=True, encoding="utf-8", cwd=self.folder
+        ).stdout.split()
 
     def said(self, *words):
         return subprocess.run([PROGRAM, *words], check=True, capture_output=True, encoding="utf-8").stdout
 
     def test_bash(self):
-        commands = re.findall(r"^  ([a-z]+)  ", self.said("--help").split("Subcommands:")[1].split("Examples")[0], re.MULTILINE)
+        commands = re.findall(
+            r"^  ([a-z]+)  ", self.said("--help").split("Subcommands:")[1].split("Examples")[0], re.MULTILINE
+        )
         self.assertGreater(len(commands), 8)
         self.assertEqual(self.completed(""), commands)
         self.assertEqual(self.completed("sw"), ["sweep"])
@@ -61,11 +65,15 @@ class HelpFiles(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("groff"), "needs groff")
     def test_the_manual_page(self):
-        done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-P-c", self.folder / "thalweg.1"], capture_output=True, encoding="utf-8")
+        done = subprocess.run(
+            ["groff", "-man", "-Tutf8", "-ww", "-P-c", self.folder / "thalweg.1"], capture_output=True, encoding="utf-8"
+        )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         text = " ".join(re.sub(".\b", "", done.stdout).split())   # without overstrikes
-        for words in ("SYNOPSIS", "thalweg run CASE.yaml", "--walltime HH:MM:SS", "thalweg plot film RUN", "--every SECONDS",
-                      "EXIT STATUS", "0 done; 1 the run failed", "thalweg check cases/quickstart/case.yaml"):
+        for words in (
+            "SYNOPSIS", "thalweg run CASE.yaml", "--walltime HH:MM:SS", "thalweg plot film RUN", "--every SECONDS",
+            "EXIT STATUS", "0 done; 1 the run failed", "thalweg check cases/quickstart/case.yaml",
+        ):
             self.assertIn(words, text)
 
 

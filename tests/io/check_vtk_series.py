@@ -1,5 +1,5 @@
-"""Opens the series that io_vtk_test wrote with VTK's own readers, as ParaView would, and compares every number; and with the
-reader of python/thalweg, which must find the same.
+"""Opens the series that io_vtk_test wrote with VTK's own readers, as ParaView would, and compares every number; and
+with the reader of python/thalweg, which must find the same.
 
 Usage: check_vtk_series.py FOLDER [OTHER]; the pictures in FOLDER must also be those in OTHER, byte for byte.
 """
@@ -42,7 +42,9 @@ def arrays(data):
     return {data.GetArrayName(n): vtk_to_numpy(data.GetArray(n)) for n in range(data.GetNumberOfArrays())}
 
 
-def check_grains(name, with_fluid, with_stress=False, index="grains", shown=lambda time: np.arange(GRAINS), fields=None):
+def check_grains(
+    name, with_fluid, with_stress=False, index="grains", shown=lambda time: np.arange(GRAINS), fields=None
+):
     """shown: the ids of the grains in a frame; fields: those of its arrays, None for all."""
     for time, path in pictures(FOLDER / name / f"{index}.pvd"):
         data = read(vtkXMLPolyDataReader(), path, time)
@@ -143,7 +145,9 @@ check_grains("stressed", True, True)
 check_grains("dry", False)
 check_grains("some", True, True, "part", lambda time: np.array([0, 7, 4096, 9000]))
 check_grains("second", True, True, "part", lambda time: np.arange(4000, GRAINS), ["id", "population"])
-check_grains("boxed", True, True, "part", lambda time: np.arange(3, 8 if time < 0.1 else 7 if time < 0.5 else 6), ["id", "held"])
+check_grains(
+    "boxed", True, True, "part", lambda time: np.arange(3, 8 if time < 0.1 else 7 if time < 0.5 else 6), ["id", "held"]
+)
 check_grains("nobody", True, True, "part", lambda time: np.arange(0), ["velocity"])
 check_fluid("whole", ["velocity", "pressure", "grain_id"], (0, 0, 0), CELLS)
 check_fluid("slice_x", ["velocity"], (12, 0, 0), (13, 20, 18))

@@ -33,8 +33,8 @@ class Parts(unittest.TestCase):
 
 class Layers(made_up.MadeUpFolder):
     def test_means_of_two_grains(self):
-        # Both centred on the edge between two layers a diameter thick, so that half of each is in each; velocities 1 and 3
-        # along x: mean 2, temperature 1/3 of the variance 1.
+        # Both centred on the edge between two layers a diameter thick, so that half of each is in each; velocities 1
+        # and 3 along x: mean 2, temperature 1/3 of the variance 1.
         place = np.array([[[0.01, 0.005, D], [0.05, 0.005, D]]])
         velocity = np.array([[[1.0, 0, 0], [3.0, 0, 0]]])
         stress = np.zeros((1, 2, 9))
@@ -87,7 +87,8 @@ class Layers(made_up.MadeUpFolder):
                 bed.surface_by_solid_fraction(D * np.arange(5), np.full(5, nothing))
 
     def test_the_surface_by_solid_fraction(self):
-        # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at the top.
+        # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at
+        # the top.
         places = self.bed_of_layers(10)
         self.write_frames((0.0, 1.0), [places, places])
         run = thalweg.Run(self.folder)
@@ -108,7 +109,8 @@ class Layers(made_up.MadeUpFolder):
         self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), height, 0.0, 1.0), 0.08, 12)
 
     def with_a_post(self, fixed):
-        """The bed with a post of spheres a quarter of a diameter apart through the whole depth, fixed in the case or not."""
+        """The bed with a post of spheres a quarter of a diameter apart through the whole depth, fixed in the case or
+        not."""
         post = np.column_stack([np.full(100, 0.0625), np.full(100, 0.5 * SIZE[1]), D * (0.5 + 0.25 * np.arange(100))])
         bed_grains = self.bed_of_layers(10)[:-1]
         apart = np.linalg.norm((bed_grains - post[0])[:, :2], axis=1)
@@ -116,8 +118,13 @@ class Layers(made_up.MadeUpFolder):
         self.write_frames((0.0, 1.0), [places, places])
         if fixed:
             case = self.folder / "case.yaml"
-            case.write_text(case.read_text().replace("grains: [{", "grains: [{diameter: 4.95e-3, density: 2550, fixed: true, "
-                                                     f"placement: {{positions: {post.tolist()}}}}}, {{"))
+            case.write_text(
+                case.read_text().replace(
+                    "grains: [{",
+                    "grains: [{diameter: 4.95e-3, density: 2550, fixed: true, "
+                    f"placement: {{positions: {post.tolist()}}}}}, {{",
+                )
+            )
         return thalweg.Run(self.folder), post, places
 
     def test_a_post_of_overlapping_spheres_is_no_bed(self):
@@ -148,7 +155,9 @@ class Layers(made_up.MadeUpFolder):
             self.assertLess(abs(found[0] / found[1] - 1.0), 1e-2)
 
     def test_profiles_of_the_run_count_for_its_own_time_only(self):
-        (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + "".join(f"{t / 10},0.1\n" for t in range(101)))
+        (self.folder / "series.csv").write_text(
+            "time [s],q_star [1]\n" + "".join(f"{t / 10},0.1\n" for t in range(101))
+        )
         with h5py.File(self.folder / "profiles.h5", "w") as file:
             file.create_group("grain_profiles")["z"] = np.arange(3.0)
         case = self.folder / "case.yaml"
@@ -164,8 +173,8 @@ class Layers(made_up.MadeUpFolder):
         self.assertFalse(bed.has_profiles_of(run, 4.0, 10.0))
 
     def test_the_surface_by_static_pixels(self):
-        # Layers at rest end 8 d high; on them a layer that slides by a diameter between frames, and one grain that flies.
-        # The outline of spheres side by side is below their tops by 1 - pi/4 of half a diameter in the mean.
+        # Layers at rest end 8 d high; on them a layer that slides by a diameter between frames, and one grain that
+        # flies. The outline of spheres side by side is below their tops by 1 - pi/4 of half a diameter in the mean.
         still = self.bed_of_layers(8)
         moving = self.bed_of_layers(9)[-200:]
         moving = moving[np.isclose(moving[:, 2], 8.5 * D)]
@@ -196,14 +205,16 @@ class Layers(made_up.MadeUpFolder):
         run = thalweg.Run(self.folder)
         self.assertAlmostEqual(bed.measured_shields_number(run, 0.0, 2.0), 0.15, 12)
         np.testing.assert_array_equal(bed.transport_rate(run, 0.0)[0], (0.0, 2.0))
-        with self.assertRaisesRegex(thalweg.RunFolderError, "no row from 3 to 4 s has a number in the column shields_number"):
+        with self.assertRaisesRegex(
+            thalweg.RunFolderError, "no row from 3 to 4 s has a number in the column shields_number"
+        ):
             bed.measured_shields_number(run, 3.0, 4.0)
 
 
 class Shields(unittest.TestCase):
     def test_of_the_flume_and_the_wide_bed(self):
-        # Zhang et al. 2022: the flume with H = 12 d and W = 10.5 mm, and tau* = 0.085 of WWF1, whose depth has three digits. They
-        # take the tangent for the sine, which is 0.3 % more at 0.0748.
+        # Zhang et al. 2022: the flume with H = 12 d and W = 10.5 mm, and tau* = 0.085 of WWF1, whose depth has three
+        # digits. They take the tangent for the sine, which is 0.3 % more at 0.0748.
         self.assertAlmostEqual(bed.shields_of(0.0748, 12 * D, D, 2.55, 0.0105), 0.047, delta=3e-5 + 0.003 * 0.047)
         self.assertLess(abs(bed.shields_of(0.016, 0.0412, 5e-3, 2.55) / 0.085 - 1), 0.05 / 41.2)
         for width in (None, 0.0105):
@@ -214,7 +225,9 @@ class Shields(unittest.TestCase):
 class Literature(unittest.TestCase):
     def test_values_at_two_shields_numbers(self):
         # Worked out by hand from the printed formulas.
-        np.testing.assert_allclose(literature.meyer_peter_mueller([0.04, 0.085, 0.1408]), (0.0, 0.0593, 0.2298), atol=1e-4)
+        np.testing.assert_allclose(
+            literature.meyer_peter_mueller([0.04, 0.085, 0.1408]), (0.0, 0.0593, 0.2298), atol=1e-4
+        )
         np.testing.assert_allclose(literature.wong_parker([0.085, 0.1408]), (0.0266, 0.1095), atol=2e-4)
         np.testing.assert_allclose(literature.fernandez_luque_van_beek(0.085, 0.037), 0.0599, atol=1e-4)
         np.testing.assert_allclose(literature.zhang_wide_bed(0.1408), 0.0354, atol=1e-4)

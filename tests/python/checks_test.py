@@ -41,7 +41,9 @@ class TheChecks(made_up.MadeUpFolder):
     def test_the_exit_code(self):
         self.assertEqual(self.main_with(lambda checks, folder: checks.expect("x", 1.0, 0.0, 2.0))[1], 0)
         self.assertEqual(self.main_with(lambda checks, folder: checks.expect("x", 3.0, 0.0, 2.0))[1], 1)
-        self.assertEqual(self.main_with(lambda checks, folder: checks.finished(Run(folder)))[1], 1)   # no summary.json yet
+        self.assertEqual(
+            self.main_with(lambda checks, folder: checks.finished(Run(folder)))[1], 1
+        )  # no summary.json yet
         text, code = self.main_with(lambda checks, folder: Run(folder), self.folder / "nowhere")
         self.assertEqual(code, 1)
         self.assertRegex(text, "^check: .*no case.yaml")
@@ -65,7 +67,8 @@ class DragOfASphere(unittest.TestCase):
         self.assertEqual(schiller_naumann_drag(2e5), 0.44)
 
     def test_settling(self):
-        # Glass of 5 mm in water: benchmarks/validation/settle_in_water. In thick oil the speed of Stokes, less 15 % Re^0.687.
+        # Glass of 5 mm in water: benchmarks/validation/settle_in_water. In thick oil the speed of Stokes, less 15 %
+        # Re^0.687.
         self.assertAlmostEqual(settling_speed(5e-3, 2.55, 9.8, 1e-6), 0.480, delta=5e-4)
         stokes = 1.55 * 9.8 * 5e-3**2 / (18.0 * 1.0)
         self.assertAlmostEqual(settling_speed(5e-3, 2.55, 9.8, 1.0) / stokes, 1.0, delta=1e-3)

@@ -1,5 +1,5 @@
-"""Text files are read and written as UTF-8, whatever the locale: every call that opens one says so. Python before 3.15 takes the
-encoding of the locale otherwise, and under an ISO-8859 locale a case with an "é" in it cannot be read."""
+"""Text files are read and written as UTF-8, whatever the locale: every call that opens one says so. Python before 3.15
+takes the encoding of the locale otherwise, and under an ISO-8859 locale a case with an "é" in it cannot be read."""
 import ast
 import os
 import subprocess
@@ -14,7 +14,13 @@ FOLDERS = ("python", "scripts", "cases", "benchmarks", "docs")
 
 def is_text(call):
     """Whether a call opens a text file: open(), or read_text(), write_text() or open() of a path."""
-    name = call.func.id if isinstance(call.func, ast.Name) else call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    name = (
+        call.func.id
+        if isinstance(call.func, ast.Name)
+        else call.func.attr
+        if isinstance(call.func, ast.Attribute)
+        else ""
+    )
     if name in ("read_text", "write_text"):
         return True
     if name != "open" or (isinstance(call.func, ast.Attribute) and isinstance(call.func.value, ast.Name) and
@@ -33,7 +39,9 @@ def calls_without_encoding(text):
 
 class Encoding(unittest.TestCase):
     def test_the_check_finds_what_it_should(self):
-        found = calls_without_encoding("open(p)\nopen(p, 'rb')\np.read_text()\nopen(p, encoding='utf-8')\nos.open(p, 0)\np.open('w')")
+        found = calls_without_encoding(
+            "open(p)\nopen(p, 'rb')\np.read_text()\nopen(p, encoding='utf-8')\nos.open(p, 0)\np.open('w')"
+        )
         self.assertEqual([call.lineno for call in found], [1, 3, 6])
 
     def test_every_text_file_is_opened_as_utf_8(self):
@@ -45,10 +53,17 @@ class Encoding(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             (folder / "case.yaml").write_text("system: grains\nname: Chézy\n", encoding="utf-8")
-            command = "import sys, thalweg, locale; print(ascii(thalweg.Run(sys.argv[1]).name), locale.getpreferredencoding(False))"
+            command = (
+                "import sys, thalweg, locale; print(ascii(thalweg.Run(sys.argv[1]).name),"
+                " locale.getpreferredencoding(False))"
+            )
             # The C locale with Python's own ways out of it switched off: ASCII.
-            environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONPATH": str(ROOT / "python")}
-            said = subprocess.run([sys.executable, "-c", command, folder], env=environment, capture_output=True, encoding="utf-8")
+            environment = os.environ | {
+                "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONPATH": str(ROOT / "python"),
+            }
+            said = subprocess.run(
+                [sys.executable, "-c", command, folder], env=environment, capture_output=True, encoding="utf-8"
+            )
             self.assertEqual(said.stdout.split(), ["'Ch\\xe9zy'", "ANSI_X3.4-1968"], said.stderr)
 
 

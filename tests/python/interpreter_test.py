@@ -1,4 +1,5 @@
-"""Scripts find a Python with what they need, though the first on the path may lack it, and Python commands name what is missing."""
+"""Scripts find a Python with what they need, though the first on the path may lack it, and Python commands name what is
+missing."""
 import importlib.util
 import os
 import shutil
@@ -25,8 +26,14 @@ class Interpreter(unittest.TestCase):
         self.assertNotEqual(subprocess.run([self.bare, "-c", "import numpy"], capture_output=True).returncode, 0)
 
     def run_with(self, interpreter, **variables):
-        environment = os.environ | {"PATH": f"{interpreter.parent}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"} | variables
-        return subprocess.run([SCRIPT, "--help"], env=environment, capture_output=True, encoding="utf-8", cwd=self.folder)
+        environment = (
+            os.environ
+            | {"PATH": f"{interpreter.parent}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
+            | variables
+        )
+        return subprocess.run(
+            [SCRIPT, "--help"], env=environment, capture_output=True, encoding="utf-8", cwd=self.folder
+        )
 
     def test_a_script_goes_on_in_the_python_that_has_what_it_needs(self):
         said = self.run_with(self.bare, THALWEG_PYTHON=sys.executable)
@@ -35,14 +42,20 @@ class Interpreter(unittest.TestCase):
 
     def test_a_python_without_it_is_tried_once_and_the_lack_is_named(self):
         # The bare interpreter is all there is: in place of Debian's as well.
-        copy = (ROOT / "python/thalweg_python.py").read_text(encoding="utf-8").replace("/usr/bin/python3", str(self.folder / "none"))
+        copy = (
+            (ROOT / "python/thalweg_python.py")
+            .read_text(encoding="utf-8")
+            .replace("/usr/bin/python3", str(self.folder / "none"))
+        )
         (self.folder / "thalweg_python.py").write_text(copy, encoding="utf-8")
         script = self.folder / "script.py"
         script.write_text("import thalweg_python\n", encoding="utf-8")
         other = self.folder / "venv/bin/other"
         other.symlink_to(self.bare)
-        said = subprocess.run([self.bare, script], env=os.environ | {"THALWEG_PYTHON": str(other)}, capture_output=True, encoding="utf-8",
-                              timeout=60)
+        said = subprocess.run(
+            [self.bare, script], env=os.environ | {"THALWEG_PYTHON": str(other)}, capture_output=True, encoding="utf-8",
+            timeout=60,
+        )
         self.assertEqual(said.returncode, 1)
         self.assertRegex(said.stderr, r"^script.py: \S+ lacks numpy, h5py, .*; install it, or set THALWEG_PYTHON")
         self.assertEqual(said.stderr.count("\n"), 1)
@@ -55,7 +68,9 @@ class Interpreter(unittest.TestCase):
             if not text.startswith("#!/usr/bin/env python3"):
                 continue
             with self.subTest(script=script):
-                said = subprocess.run([sys.executable, "-B", script, "--help"], capture_output=True, encoding="utf-8", cwd=empty)
+                said = subprocess.run(
+                    [sys.executable, "-B", script, "--help"], capture_output=True, encoding="utf-8", cwd=empty
+                )
                 self.assertEqual(said.returncode, 0, said.stderr)
                 self.assertIn(text.split('"""')[1].split()[0], said.stdout)
         self.assertEqual(list(empty.iterdir()), [])
@@ -75,20 +90,32 @@ class Package(unittest.TestCase):
         self.assertEqual(project["requires-python"], ">=3.11")
         self.assertRegex((ROOT / "docs/installing.md").read_text(encoding="utf-8"), r"\| Python with [^|]*\| 3\.11 \|")
 
-    @unittest.skipUnless(all(importlib.util.find_spec(name) for name in ("pip", "setuptools", "wheel")), "needs pip and setuptools")
+    @unittest.skipUnless(
+    all(importlib.util.find_spec(name) for name in ("pip", "setuptools", "wheel")), "needs pip and setuptools"
+)
     def test_the_package_installs_without_a_network(self):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             shutil.copytree(ROOT / "python", folder / "python")   # pip builds in the source folder
             subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
-            # Debian has h5py under another name (h5py._debian_h5py_serial), which pip does not take for it: no dependencies.
-            subprocess.run([folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index", "--no-deps",
-                            folder / "python"], check=True, capture_output=True)
+            # Debian has h5py under another name (h5py._debian_h5py_serial), which pip does not take for it: no
+            # dependencies.
+            subprocess.run(
+                [
+                    folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-index",
+                    "--no-deps", folder / "python",
+                ], check=True, capture_output=True,
+            )
             made_up_run.write_run(folder / "run")
-            for words, code, output in ((("analyze", folder), 2, "there is no case.yaml in it"),
-                                        (("plot", "q", folder / "run"), 0, "transport_rate.png"), (("report", folder / "run"), 0, "report.html")):
-                said = subprocess.run([folder / "venv/bin/thalweg-tools", *words], capture_output=True, encoding="utf-8",
-                                      env=os.environ | {"PYTHONPATH": ""}, cwd=folder)
+            for words, code, output in (
+                (("analyze", folder), 2, "there is no case.yaml in it"),
+                (("plot", "q", folder / "run"), 0, "transport_rate.png"),
+                (("report", folder / "run"), 0, "report.html"),
+            ):
+                said = subprocess.run(
+                    [folder / "venv/bin/thalweg-tools", *words], capture_output=True, encoding="utf-8",
+                    env=os.environ | {"PYTHONPATH": ""}, cwd=folder,
+                )
                 self.assertEqual(said.returncode, code, said.stderr)
                 self.assertIn(output, said.stdout + said.stderr)
             packages = next((folder / "venv/lib").glob("python*/site-packages/thalweg"))

@@ -47,15 +47,16 @@ class EqualIntervals(unittest.TestCase):
             self.assertEqual(at_equal_intervals(short).sum(), len(short))
 
 
-# How often the true mean is within one and two errors, by the number of independent values that a series of 600 is worth: the
-# table of docs/theory.md, section 5.
+# How often the true mean is within one and two errors, by the number of independent values that a series of 600 is
+# worth: the table of docs/theory.md, section 5.
 COVERAGE = {3: (0.52, 0.78), 5: (0.59, 0.85), 10: (0.64, 0.90), 30: (0.68, 0.94), 100: (0.68, 0.95)}
 
 
 class MeanWithError(unittest.TestCase):
     def test_the_error_of_correlated_values(self):
-        # The variance of the mean of such a series is (1 + memory)/(1 - memory)/count (Priestley 1981, sec. 5.3). The mean
-        # of 200 estimates scatters far less than the 10 % allowed; Geyer's sequence is known to be a few per cent high.
+        # The variance of the mean of such a series is (1 + memory)/(1 - memory)/count (Priestley 1981, sec. 5.3). The
+        # mean of 200 estimates scatters far less than the 10 % allowed; Geyer's sequence is known to be a few per cent
+        # high.
         generator = np.random.default_rng(3)
         for memory in (0.0, 0.5, 0.9):
             errors = [thalweg.mean_with_error(autoregressive(generator, memory, LENGTH)).error for _ in range(SERIES)]
@@ -70,7 +71,9 @@ class MeanWithError(unittest.TestCase):
             found = [thalweg.mean_with_error(x) for x in series_worth(generator, worth, 500)]
             for errors, share in ((1.0, one), (2.0, two)):
                 inside = np.mean([abs(m.mean) < errors * m.error for m in found])
-                self.assertLess(abs(inside - share), 3.0 * np.sqrt(share * (1.0 - share) / 500) + 0.005, (worth, errors))
+                self.assertLess(
+                    abs(inside - share), 3.0 * np.sqrt(share * (1.0 - share) / 500) + 0.005, (worth, errors)
+                )
             holds = np.mean([m.error_holds for m in found])
             if worth <= 5:   # one in forty
                 self.assertLess(holds, 0.05)
@@ -116,13 +119,15 @@ class Steadiness(unittest.TestCase):
         # sqrt(200 0.05 0.95) = 3.1. The mean is a hundred times the scatter, so that it is steady otherwise.
         generator = np.random.default_rng(7)
         for memory in (0.0, 0.8):
-            found = [thalweg.steadiness(100.0 + autoregressive(generator, memory, LENGTH)).steady for _ in range(SERIES)]
+            found = [
+                thalweg.steadiness(100.0 + autoregressive(generator, memory, LENGTH)).steady for _ in range(SERIES)
+            ]
             self.assertLess(abs(found.count(False) - 10), 10, memory)
             self.assertEqual(found.count(None), 0)
 
     def test_a_drift_is_seen(self):
-        # The slope of such a series over the length 1 has the error sqrt(12 (1 + memory)/(1 - memory)/count) = 0.16; a test
-        # at two errors misses a rise of five times one time in a thousand.
+        # The slope of such a series over the length 1 has the error sqrt(12 (1 + memory)/(1 - memory)/count) = 0.16; a
+        # test at two errors misses a rise of five times one time in a thousand.
         generator = np.random.default_rng(8)
         error = np.sqrt(12.0 * 9.0 / LENGTH)
         seen = 0
@@ -138,17 +143,22 @@ class Steadiness(unittest.TestCase):
         self.assertIn("not steady: a straight line through it changes by -2 +- ", verdict.sentence())
 
     def test_a_trend_as_large_as_the_mean_is_not_steady(self):
-        # Worth three independent values, with scatter and rise of the size of the mean: a run that was once called steady.
+        # Worth three independent values, with scatter and rise of the size of the mean: a run that was once called
+        # steady.
         generator = np.random.default_rng(9)
-        found = [thalweg.steadiness(1.0 + 0.3 * x + np.linspace(-0.5, 0.5, 600)) for x in series_worth(generator, 3, 200)]
+        found = [
+            thalweg.steadiness(1.0 + 0.3 * x + np.linspace(-0.5, 0.5, 600)) for x in series_worth(generator, 3, 200)
+        ]
         self.assertLessEqual(sum(verdict.steady is True for verdict in found), 2)
         self.assertIn("which takes 20 independent values", thalweg.steadiness(np.arange(10.0)).sentence())
 
     def test_a_drift_that_may_be_half_of_the_mean_is_not_excluded(self):
-        # 100 independent values of variance 1 leave +- 0.35 of the drift, 0.7 with 95 %: more than half of 0.5, less than half
-        # of 10.
+        # 100 independent values of variance 1 leave +- 0.35 of the drift, 0.7 with 95 %: more than half of 0.5, less
+        # than half of 10.
         generator = np.random.default_rng(10)
-        trends = [[thalweg.steadiness(mean + generator.normal(size=100)).trend for _ in range(100)] for mean in (0.5, 10.0)]
+        trends = [
+            [thalweg.steadiness(mean + generator.normal(size=100)).trend for _ in range(100)] for mean in (0.5, 10.0)
+        ]
         self.assertGreater(trends[0].count(NOT_BOUNDED), 85)
         self.assertGreater(trends[1].count(STEADY), 85)
 

@@ -92,24 +92,32 @@ class Report(unittest.TestCase):
         return Page(page_of(thalweg.Run(self.folder)))
 
     def test_a_bed_that_is_not_finished(self):
-        self.case(head="# command thalweg run x.yaml --out run --set fluid.time_step=1e-05 --until 2\n# version 0.1.0\n")
+        self.case(
+            head="# command thalweg run x.yaml --out run --set fluid.time_step=1e-05 --until 2\n# version 0.1.0\n"
+        )
         page = self.page()
         self.assertEqual(page.elsewhere, [])
         for title in ("Picture", "Transport", "Warnings", "Case, as it was run", "Provenance", "How to repeat it"):
             self.assertIn(title, page.sections)
         self.assertNotIn("Where the time went", page.sections)   # no summary yet
-        for words in ("it is still going, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2", "The step is <long>.",
-                      "3 grains overlap (at 0.5 s)", "0.1.0 (aaa)", "--resume", "standard error"):
+        for words in (
+            "it is still going, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2",
+            "The step is <long>.", "3 grains overlap (at 0.5 s)", "0.1.0 (aaa)", "--resume", "standard error",
+        ):
             self.assertIn(words, page.text)
         self.assertEqual(page.text.count("The step is <long>."), 1)   # of two sessions
 
     def test_a_run_that_ended(self):
         phases = {"links": {"mean_seconds": 30.0, "largest_seconds": 31.0, "share": 0.75},
                   "sweep": {"mean_seconds": 10.0, "largest_seconds": 11.0, "share": 0.25}}
-        summary = {"finished": True, "reason": "", "simulated_time": 2.0, "until": 2.0, "version": "0.1.0 (bbb)", "ranks": 2, "wall_seconds": 40.0,
-                   "steps_in_this_session": 100, "steps_per_second": 2.5, "phases": phases,
-                   "bed": {"porosity": 0.4, "bed_height": 0.0123}, "units": {"bed_height": "m", "porosity": "1"}}
-        for finished, words in ((True, "Finished at 2 s."), (False, "Not finished, stopped by thalweg stop: at 2 of 2 s.")):
+        summary = {
+            "finished": True, "reason": "", "simulated_time": 2.0, "until": 2.0, "version": "0.1.0 (bbb)", "ranks": 2,
+            "wall_seconds": 40.0, "steps_in_this_session": 100, "steps_per_second": 2.5, "phases": phases,
+            "bed": {"porosity": 0.4, "bed_height": 0.0123}, "units": {"bed_height": "m", "porosity": "1"},
+        }
+        for finished, words in (
+            (True, "Finished at 2 s."), (False, "Not finished, stopped by thalweg stop: at 2 of 2 s."),
+        ):
             summary |= {"finished": finished, "reason": "" if finished else "stopped by thalweg stop"}
             (self.folder / "summary.json").write_text(json.dumps(summary))
             page = self.page()
@@ -121,12 +129,18 @@ class Report(unittest.TestCase):
 
     def test_the_balance_of_stresses(self):
         diameter = made_up_run.DIAMETER
-        self.case(head=f"fluid: {{density: 1000}}\ngravity: {{magnitude: 9.8, slope: 0.06}}\ngrains: [{{diameter: {diameter}, density: 2550}}]\n")
+        self.case(
+            head=(
+                f"fluid: {{density: 1000}}\ngravity: {{magnitude: 9.8, slope: 0.06}}\ngrains: [{{diameter: {diameter},"
+                " density: 2550}]\n"
+            )
+        )
         made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", diameter)
         made_up_profiles.add_stress_balance(self.folder / "profiles.h5", diameter)
         page = self.page()
         self.assertIn("Profiles", page.sections)
-        # Total and driving stress are 1 Pa everywhere, and side walls take 1 Pa: the gap is all of it, and the driving stress is nought.
+        # Total and driving stress are 1 Pa everywhere, and side walls take 1 Pa: the gap is all of it, and the driving
+        # stress is nought.
         self.assertIn("The balance of stresses has not been measured yet.", page.text)
         with h5py.File(self.folder / "profiles.h5", "a") as file:
             file["stress_balance/side_wall_stress"][...] = 0.75
@@ -142,7 +156,9 @@ class Report(unittest.TestCase):
         self.assertEqual(page.pictures, 2)
         for velocity, pictures in ((0.0, 2), (1.0, 3)):   # means that have not begun are not drawn
             with h5py.File(self.folder / "profiles.h5", "w") as file:
-                file["fluid_statistics/z"], file["fluid_statistics/velocity"] = np.arange(4.0), np.full((4, 3), velocity)
+                file["fluid_statistics/z"], file["fluid_statistics/velocity"] = np.arange(4.0), np.full(
+                    (4, 3), velocity
+                )
                 file["fluid_statistics/reynolds_stress"] = np.zeros((4, 6))
             self.assertEqual(self.page().pictures, pictures)
 
@@ -151,7 +167,9 @@ class Report(unittest.TestCase):
         for name in ("grains.pvd", "fluid.pvd"):
             (self.folder / name).unlink()
         with h5py.File(self.folder / "profiles.h5", "w") as file:
-            for name in ("z", "solid_fraction", "grain_shear_stress", "fluid_shear_stress", "total_stress", "driving_stress"):
+            for name in (
+                "z", "solid_fraction", "grain_shear_stress", "fluid_shear_stress", "total_stress", "driving_stress",
+            ):
                 file[f"continuum/{name}"] = np.linspace(0.0, 1.0, 5)
             for name in ("grain_velocity", "fluid_velocity"):
                 file[f"continuum/{name}"] = np.ones((5, 3))
@@ -168,8 +186,10 @@ class Report(unittest.TestCase):
         self.assertEqual(page.pictures, 0)
 
     def test_the_command(self):
-        done = subprocess.run([sys.executable, "-B", "-m", "thalweg", "report", self.folder], text=True, capture_output=True,
-                              env=os.environ | {"PYTHONPATH": str(ROOT / "python")})
+        done = subprocess.run(
+            [sys.executable, "-B", "-m", "thalweg", "report", self.folder], text=True, capture_output=True,
+            env=os.environ | {"PYTHONPATH": str(ROOT / "python")},
+        )
         self.assertEqual((done.returncode, done.stdout), (0, f"{self.folder / 'report.html'}\n"), done.stderr)
         Page((self.folder / "report.html").read_text(encoding="utf-8"))
 
@@ -178,9 +198,12 @@ class Report(unittest.TestCase):
         import matplotlib.image
         (self.folder / "report.html").write_text(page_of(thalweg.Run(self.folder)), encoding="utf-8")
         shot = self.folder / "shot.png"
-        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder / 'browser'}",
-                        "--window-size=1000,2400", f"--screenshot={shot}", (self.folder / "report.html").as_uri()], check=True,
-                       capture_output=True, timeout=100)
+        subprocess.run(
+            [
+                "chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder / 'browser'}",
+                "--window-size=1000,2400", f"--screenshot={shot}", (self.folder / "report.html").as_uri(),
+            ], check=True, capture_output=True, timeout=100,
+        )
         pixels = matplotlib.image.imread(shot)[..., :3]
         np.testing.assert_array_equal(pixels[5, 5], 1.0)   # a white page with text and coloured grains on it
         self.assertGreater(float((pixels.max(axis=2) < 0.4).mean()), 0.005)
@@ -202,8 +225,10 @@ class History(unittest.TestCase):
         self.assertEqual(warnings_of([first, second]), ["The step is <long>.", "3 grains overlap (at 0.5 s)"])
 
     def test_settings(self):
-        self.assertEqual(settings_in("thalweg run a.yaml --set 'domain.size=[1, 2]' --set=x=1 --until 3 --out --until=4"),
-                         ["domain.size=[1, 2]", "x=1", "run.until=3", "run.until=4"])
+        self.assertEqual(
+            settings_in("thalweg run a.yaml --set 'domain.size=[1, 2]' --set=x=1 --until 3 --out --until=4"),
+            ["domain.size=[1, 2]", "x=1", "run.until=3", "run.until=4"],
+        )
 
 
 if __name__ == "__main__":

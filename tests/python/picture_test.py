@@ -1,4 +1,5 @@
-"""thalweg plot picture draws grains and flow in three dimensions without a screen, and says in one sentence what is missing."""
+"""thalweg plot picture draws grains and flow in three dimensions without a screen, and says in one sentence what is
+missing."""
 import os
 import pathlib
 import subprocess
@@ -36,9 +37,13 @@ class Picture(unittest.TestCase):
         made_up_run.write_run(self.folder)
 
     def draw(self, *options):
-        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"} | {"PYTHONPATH": str(ROOT / "python")}
-        return subprocess.run([sys.executable, "-B", "-m", "thalweg", "plot", "picture", self.folder, *options], text=True, capture_output=True,
-                              env=environment)
+        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"} | {
+            "PYTHONPATH": str(ROOT / "python")
+        }
+        return subprocess.run(
+            [sys.executable, "-B", "-m", "thalweg", "plot", "picture", self.folder, *options], text=True,
+            capture_output=True, env=environment,
+        )
 
     def pixels(self, *options):
         out = self.folder / "pictures" / "three.png"
@@ -68,7 +73,9 @@ class Picture(unittest.TestCase):
         self.assertGreater(share(pixels, bluish), 0.1)
 
     def test_what_is_missing(self):
-        for name, words in (("fluid.pvd", None), ("grains.pvd", "no frame of grains or fluid"), ("case.yaml", "no case.yaml")):
+        for name, words in (
+            ("fluid.pvd", None), ("grains.pvd", "no frame of grains or fluid"), ("case.yaml", "no case.yaml"),
+        ):
             (self.folder / name).unlink()
             if words:
                 done = self.draw()

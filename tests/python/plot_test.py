@@ -37,8 +37,10 @@ class Plot(unittest.TestCase):
         self.grains = made_up_run.write_run(self.folder)
 
     def plot(self, *options, kind="all", **environment):
-        return subprocess.run([sys.executable, "-B", "-m", "thalweg", "plot", kind, self.folder, *options], text=True,
-                              capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT / "python"), **environment})
+        return subprocess.run(
+            [sys.executable, "-B", "-m", "thalweg", "plot", kind, self.folder, *options], text=True,
+            capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT / "python"), **environment},
+        )
 
     def film(self, out, **environment):
         return self.plot("--out", out, kind="film", **environment)
@@ -71,7 +73,10 @@ class Plot(unittest.TestCase):
         figure = height_profiles.figure_of(thalweg.Run(self.folder))
         labels = [[line.get_label() for line in axes.lines] for axes in figure.axes]
         self.assertEqual(labels[1][:2], ["grains", "fluid"])
-        for label in ("lubrication correction", "total", "driving", "driving less side walls", r"$\rho\, g \sin\alpha\, (z_{top} - z)$"):
+        for label in (
+            "lubrication correction", "total", "driving", "driving less side walls",
+            r"$\rho\, g \sin\alpha\, (z_{top} - z)$",
+        ):
             self.assertIn(label, labels[2])
         # The weight of the water alone: rho g sin(alpha) times the height of the box at the floor, nothing at the top.
         line = figure.axes[2].lines[labels[2].index(r"$\rho\, g \sin\alpha\, (z_{top} - z)$")]
@@ -187,8 +192,8 @@ class Plot(unittest.TestCase):
             self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), expected)
 
     def rate_panels(self, early):
-        """The panels of transport_rate.png of three seconds about 0.05, of which the first 20 measurements are `early`, the rates and
-        the mean from 1 s on."""
+        """The panels of transport_rate.png of three seconds about 0.05, of which the first 20 measurements are `early`,
+        the rates and the mean from 1 s on."""
         case = self.folder / "case.yaml"
         case.write_text("name: rates\nsystem: resolved\nanalysis: {transport_rate: {from: 1.0}}\n")
         rate = 0.05 + 0.01 * np.random.default_rng(1).normal(size=300)

@@ -28,7 +28,9 @@ class Report(made_up.MadeUpFolder):
 
     def write_bed(self):
         """24 x 2 grains a layer, ten layers one diameter apart, at rest."""
-        x, y, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]), (np.arange(10) + 0.5) * D)
+        x, y, z = np.meshgrid(
+            (np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]), (np.arange(10) + 0.5) * D
+        )
         places = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
         times = np.arange(0.0, 4.05, 0.1)
         self.write_frames(times, [places] * len(times))
@@ -83,7 +85,9 @@ class Report(made_up.MadeUpFolder):
             self.fail(f"{word} is not JSON")
 
         text = report.write(self.folder / "analysis")[0].read_text()
-        self.assertEqual(json.loads(text, parse_constant=refuse)["one_row"], {"error": None, "steps": [None, 1.5], "steady": None})
+        self.assertEqual(
+            json.loads(text, parse_constant=refuse)["one_row"], {"error": None, "steps": [None, 1.5], "steady": None}
+        )
 
     def test_the_shields_number_under_a_moving_top_is_the_measured_one(self):
         self.write_bed()
@@ -95,13 +99,17 @@ class Report(made_up.MadeUpFolder):
         report = report_of(thalweg.Run(self.folder))
         self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["shields"], 0.3, 12)
         self.assertTrue(any("as measured" in line for line in report.lines))
-        self.assertNotIn("shields", report.numbers["surface_by_static_pixels"])   # the top's share of the stress is not known
+        self.assertNotIn(
+            "shields", report.numbers["surface_by_static_pixels"]
+        )  # the top's share of the stress is not known
 
     def test_the_shields_number_of_a_held_flow_by_static_pixels_goes_with_the_hydraulic_radius(self):
         self.write_bed()
         case = self.folder / "case.yaml"
         case.write_text(case.read_text().replace("fluid: {", "fluid: {mean_velocity: [0.5, 0, 0], ", 1))
-        (self.folder / "series.csv").write_text("time [s],shields_number [1],hydraulic_radius [m]\n1.0,0.1,4e-3\n4.0,0.3,6e-3\n")
+        (self.folder / "series.csv").write_text(
+            "time [s],shields_number [1],hydraulic_radius [m]\n1.0,0.1,4e-3\n4.0,0.3,6e-3\n"
+        )
         numbers = report_of(thalweg.Run(self.folder)).numbers
         self.assertAlmostEqual(numbers["surface_by_solid_fraction"]["shields"], 0.2, 12)
         depth = numbers["surface_by_static_pixels"]["depth"]
@@ -122,8 +130,8 @@ class Report(made_up.MadeUpFolder):
         self.write_bed()
         missing = report_of(thalweg.Run(self.folder))
         self.assertTrue(any(line.startswith("water") and "left out" in line for line in missing.lines))
-        # Half of 10.5 mm and a slope of 0.0748 make u_tau = 0.0619 m/s, and y+ = 325 in the middle. The mean by the integrals
-        # of y+ up to 10.8, and of ln(y+)/0.41 + 5 from there.
+        # Half of 10.5 mm and a slope of 0.0748 make u_tau = 0.0619 m/s, and y+ = 325 in the middle. The mean by the
+        # integrals of y+ up to 10.8, and of ln(y+)/0.41 + 5 from there.
         friction_velocity = np.sqrt(9.8 * np.sin(np.arctan(0.0748)) * 5.25e-3)
         middle = friction_velocity * (np.log(friction_velocity * 5.25e-3 / 1e-6) / 0.41 + 5.0)
         width, sublayer = friction_velocity * 5.25e-3 / 1e-6, 10.8
@@ -148,17 +156,27 @@ class Report(made_up.MadeUpFolder):
             self.assertEqual(window(thalweg.Run(self.folder)), (start, 4.0))
 
     def test_the_mean_of_the_run_itself(self):
-        """Where no times are given it is that of summary.json, which may be of more measurements than series.csv has rows."""
-        means = {"q_s_independent": 25.0, "q_star_mean": 0.1234, "q_star_error": 0.002, "q_star_deviation": 0.01, "steady": -2,
-                 "q_star_drift": 0.05, "q_star_drift_error": 0.01, "measured_from": 1.0, "measured_until": 3.99,
-                 "measurements": 2991, "moving_grains_mean": 7.0, "moving_grains_error": None, "mean_from": 1.0}
+        """Where no times are given it is that of summary.json, which may be of more measurements than series.csv has
+        rows."""
+        means = {
+            "q_s_independent": 25.0, "q_star_mean": 0.1234, "q_star_error": 0.002, "q_star_deviation": 0.01,
+            "steady": -2, "q_star_drift": 0.05, "q_star_drift_error": 0.01, "measured_from": 1.0,
+            "measured_until": 3.99, "measurements": 2991, "moving_grains_mean": 7.0, "moving_grains_error": None,
+            "mean_from": 1.0,
+        }
         (self.folder / "summary.json").write_text(json.dumps({"finished": True, "transport_rate": means}))
         run = thalweg.Run(self.folder)
         report = report_of(run)
-        self.assertIn("transport  q* = 0.1234 +- 0.002, deviation 0.01, from 1 to 3.99 s (2991 measurements worth 25 independent "
-                      "ones)", report.lines)
-        self.assertIn("transport  too short a time to tell whether it is steady: a straight line through it changes by +0.05 +- 0.01 "
-                      "over this time, which is within chance, but may be half of the mean", report.lines)
+        self.assertIn(
+            "transport  q* = 0.1234 +- 0.002, deviation 0.01, from 1 to 3.99 s (2991 measurements worth 25 independent "
+            "ones)", report.lines,
+        )
+        self.assertIn(
+            (
+                "transport  too short a time to tell whether it is steady: a straight line through it changes by +0.05"
+                " +- 0.01 over this time, which is within chance, but may be half of the mean"
+            ), report.lines,
+        )
         report.write(self.folder / "out")
         numbers = json.loads((self.folder / "out/summary.json").read_text(), parse_constant=self.fail)
         self.assertEqual(numbers["moving_grains"], {"mean": 7.0, "error": None})

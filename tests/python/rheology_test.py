@@ -31,8 +31,10 @@ class Rheology(unittest.TestCase):
         # Grains at rest in a fluid under 7 Pa: they have -7 Pa over their share of the volume, and no effective stress.
         phi = np.array([0.2, 0.6])
         isotropic = -7.0 * phi[:, None] * np.eye(3).ravel()
-        layers = {"contact_stress": np.zeros((2, 9)), "grain_fluid_stress": isotropic, "lubrication_stress": np.zeros((2, 9)),
-                  "kinetic_stress": np.zeros((2, 6)), "solid_fraction": phi, "fluid_pressure": np.full(2, 7.0)}
+        layers = {
+            "contact_stress": np.zeros((2, 9)), "grain_fluid_stress": isotropic, "lubrication_stress": np.zeros((2, 9)),
+            "kinetic_stress": np.zeros((2, 6)), "solid_fraction": phi, "fluid_pressure": np.full(2, 7.0),
+        }
         np.testing.assert_allclose(solid_stress(layers), 0.0, atol=1e-12)
 
 

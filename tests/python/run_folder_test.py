@@ -105,13 +105,16 @@ class RunFolder(made_up.MadeUpFolder):
         return thalweg.Run(self.folder)
 
     def test_the_reference_grain_does_not_depend_on_the_order_of_the_populations(self):
-        fixed, small = "{count: 50, diameter: 9e-3, density: 5000, fixed: true}", "{count: 60, diameter: 1e-3, density: 2000}"
+        fixed, small = (
+            "{count: 50, diameter: 9e-3, density: 5000, fixed: true}", "{count: 60, diameter: 1e-3, density: 2000}",
+        )
         large, before = "{count: 8, diameter: 2e-3, density: 3000}", "[{count: 969, diameter: 4.95e-3, density: 2550}]"
         for order in ((fixed, small, large), (large, small, fixed), (small, fixed, large)):
             now = "[" + ", ".join(order) + "]"
             run = self.with_case(before, now)
             before = now
-            # Volumes are as 60 to 64: half of it is finer than 2 mm, and the mean density is (60 * 2000 + 64 * 3000)/124.
+            # Volumes are as 60 to 64: half of it is finer than 2 mm, and the mean density is (60 * 2000 + 64 *
+            # 3000)/124.
             self.assertEqual(run.diameter, 2e-3)
             self.assertAlmostEqual(run.density_ratio, 312.0 / 124.0, 12)
 
@@ -126,7 +129,9 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertAlmostEqual(run.density_ratio, (5 * 2.0 + 3.92 * 3.0) / 8.92, 12)
 
     def test_the_reference_grain_is_the_one_in_the_series(self):
-        (self.folder / "series.csv").write_text("time [s],reference_diameter [m],reference_density [kg/m^3]\n0,3e-3,2650\n")
+        (self.folder / "series.csv").write_text(
+            "time [s],reference_diameter [m],reference_density [kg/m^3]\n0,3e-3,2650\n"
+        )
         run = thalweg.Run(self.folder)
         self.assertEqual(run.diameter, 3e-3)
         self.assertAlmostEqual(run.density_ratio, 2.65, 12)
@@ -134,7 +139,9 @@ class RunFolder(made_up.MadeUpFolder):
     def test_what_drives_the_fluid(self):
         self.assertTrue(thalweg.Run(self.folder).driven_by_slope)
         self.assertFalse(self.with_case("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}").driven_by_slope)
-        self.assertFalse(self.with_case("fluid: {density", "fluid: {mean_velocity: {velocity: 0.1}, density").driven_by_slope)
+        self.assertFalse(
+            self.with_case("fluid: {density", "fluid: {mean_velocity: {velocity: 0.1}, density").driven_by_slope
+        )
 
     def test_a_flow_through_open_faces_or_without_a_slope_is_not_driven_by_it(self):
         inlet = "x_low: {type: velocity_inlet, velocity: [0.1, 0, 0]}, x_high: pressure_outlet"
@@ -145,9 +152,11 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertFalse(self.with_case("slope: 0.0748", "slope: 0").driven_by_slope)
 
     def test_side_walls_are_counted(self):
-        for faces, count in (("y_low: no_slip, y_high: free_slip", 1), ("y: free_slip", 0), ("y: periodic", 0),
-                             ("y: {type: slip_law_of_the_wall, of_first_cell: true}", 2),
-                             ("y_low: {type: navier_slip, slip_length: 1e-3}, y_high: {type: moving, velocity: [1, 0, 0]}", 2)):
+        for faces, count in (
+            ("y_low: no_slip, y_high: free_slip", 1), ("y: free_slip", 0), ("y: periodic", 0),
+            ("y: {type: slip_law_of_the_wall, of_first_cell: true}", 2),
+            ("y_low: {type: navier_slip, slip_length: 1e-3}, y_high: {type: moving, velocity: [1, 0, 0]}", 2),
+        ):
             case = self.folder / "case.yaml"
             case.write_text(made_up.CASE.replace("y: {type: law_of_the_wall}", faces))
             self.assertEqual(thalweg.Run(self.folder).side_walls, count, faces)
@@ -186,14 +195,19 @@ class RunFolder(made_up.MadeUpFolder):
         """A file of the tracks of grains 3 and 17."""
         path.parent.mkdir(exist_ok=True)
         with h5py.File(path, "w") as file:
-            for name, values, unit in (("id", np.array([3, 17]), "1"), ("time", np.array(times, float), "s"),
-                                       ("position", np.array(places, float), "m"), ("velocity", -np.array(places, float), "m/s")):
+            for name, values, unit in (
+                ("id", np.array([3, 17]), "1"), ("time", np.array(times, float), "s"),
+                ("position", np.array(places, float), "m"), ("velocity", -np.array(places, float), "m/s"),
+            ):
                 file.create_dataset(name, data=values).attrs["unit"] = unit
             file["position"].attrs["components"] = "x y z"
 
     def test_tracks(self):
-        """Parts in the order of their numbers, behind the single file of an older version, of which a restart has outdated a row."""
-        with self.assertRaisesRegex(thalweg.RunFolderError, r"it has no tracks because its case has no analysis\.tracks, which records them"):
+        """Parts in the order of their numbers, behind the single file of an older version, of which a restart has
+        outdated a row."""
+        with self.assertRaisesRegex(
+            thalweg.RunFolderError, r"it has no tracks because its case has no analysis\.tracks, which records them"
+        ):
             thalweg.Run(self.folder).tracks
         places = np.arange(90.0).reshape(15, 2, 3)
         self.write_part(self.folder / "tracks/part_000000000.h5", [], np.zeros((0, 2, 3)))
@@ -211,12 +225,16 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertIn("position [m] (15, 2, 3)", repr(tracks))
         self.assertNotIn("force", tracks)
         (self.folder / "tracks/part_000000009.h5").write_bytes(b"damaged")
-        with self.assertRaisesRegex(thalweg.RunFolderError, "part_000000009.h5 cannot be read: a restart has replaced it"):
+        with self.assertRaisesRegex(
+            thalweg.RunFolderError, "part_000000009.h5 cannot be read: a restart has replaced it"
+        ):
             thalweg.Run(self.folder).tracks
 
     def test_of_tracks_only_what_is_asked_for_is_read(self):
         for part in range(20):
-            self.write_part(self.folder / f"tracks/part_{part}.h5", 1000 * part + np.arange(1000), np.zeros((1000, 2, 3)))
+            self.write_part(
+                self.folder / f"tracks/part_{part}.h5", 1000 * part + np.arange(1000), np.zeros((1000, 2, 3))
+            )
         peak, tracks = peak_of(lambda: thalweg.Run(self.folder).tracks)
         self.assertLess(peak, 1e6)   # the times are 160 kB
         peak, position = peak_of(lambda: tracks["position"])
@@ -225,19 +243,27 @@ class RunFolder(made_up.MadeUpFolder):
 
     def test_entrainment(self):
         (self.folder / "case.yaml").write_text(made_up.CASE.replace("analysis: {", "analysis: {entrainment: {}, "))
-        with self.assertRaisesRegex(thalweg.RunFolderError, "it has no entrainment yet; they are written with the first checkpoint"):
+        with self.assertRaisesRegex(
+            thalweg.RunFolderError, "it has no entrainment yet; they are written with the first checkpoint"
+        ):
             thalweg.Run(self.folder).entrainment
         (self.folder / "entrainment").mkdir()
-        for part, events in ((0, ()), (5, ((8, 0.4), (9, 0.1))), (9, ((8, 0.7), (9, 0.8)))):   # the last part watched otherwise
+        for part, events in (
+            (0, ()), (5, ((8, 0.4), (9, 0.1))), (9, ((8, 0.7), (9, 0.8))),
+        ):  # the last part watched otherwise
             with h5py.File(self.folder / f"entrainment/part_{part}.h5", "w") as file:
                 for number, time in events:
                     group = file.create_group(f"event_00000{number}")
                     group.attrs["time"], group.attrs["time_unit"] = time, "s"
                     group.create_dataset("fluid_force", data=[time, 2 * time]).attrs["unit"] = "N"
         events = thalweg.Run(self.folder).entrainment
-        self.assertEqual([(name, event.attributes) for name, event in events.items()],
-                         [("event_000009", {"time": 0.1}), ("event_000008", {"time": 0.4}), ("event_000010", {"time": 0.7}),
-                          ("event_000011", {"time": 0.8})])
+        self.assertEqual(
+            [(name, event.attributes) for name, event in events.items()],
+            [
+                ("event_000009", {"time": 0.1}), ("event_000008", {"time": 0.4}), ("event_000010", {"time": 0.7}),
+                ("event_000011", {"time": 0.8}),
+            ],
+        )
         np.testing.assert_array_equal(events["event_000011"]["fluid_force"], (0.8, 1.6))
         self.assertEqual(events["event_000011"].units, {"fluid_force": "N"})
 
@@ -245,7 +271,9 @@ class RunFolder(made_up.MadeUpFolder):
         self.write_frames((0.0, 0.1, 0.2), np.zeros((3, 2, 3)))
         path = self.folder / "grains.pvd"
         whole = path.read_text()
-        for torn in (whole[:-30], whole[:whole.rindex("grains_2")], whole[:whole.rindex("grains_2")] + "ion></VTKFile>"):
+        for torn in (
+            whole[:-30], whole[: whole.rindex("grains_2")], whole[: whole.rindex("grains_2")] + "ion></VTKFile>",
+        ):
             path.write_text(torn)
             self.assertEqual(list(thalweg.Run(self.folder).grains.times), [0.0, 0.1, 0.2][:torn.count("/>")])
         path.write_text(whole[:40] + "<" + whole[40:])
@@ -254,7 +282,9 @@ class RunFolder(made_up.MadeUpFolder):
 
     def test_a_frame_is_not_held_twice(self):
         values = np.random.default_rng(1).random((60, 50, 40))
-        made_up.write_image(self.folder / "fluid/a.vti", (0, 40, 0, 50, 0, 60), 1e-3, {"pressure": values, "density": values}, raw)
+        made_up.write_image(
+            self.folder / "fluid/a.vti", (0, 40, 0, 50, 0, 60), 1e-3, {"pressure": values, "density": values}, raw
+        )
         peak, image = peak_of(lambda: read_image(self.folder / "fluid/a.vti"))
         np.testing.assert_array_equal(image[2]["pressure"], values)
         self.assertLess(peak, 2.5 * values.nbytes)   # two arrays, and a block on its way into them
@@ -293,7 +323,10 @@ class RunFolder(made_up.MadeUpFolder):
     def test_a_part_of_the_grains_may_show_none(self):
         (self.folder / "grain_parts/tracers").mkdir(parents=True)
         for n, count in enumerate((2, 0)):
-            arrays = {"radius": np.full(count, 1e-3), "contact_stress": np.ones((count, 9)), "orientation": np.ones((count, 4))}
+            arrays = {
+                "radius": np.full(count, 1e-3), "contact_stress": np.ones((count, 9)),
+                "orientation": np.ones((count, 4)),
+            }
             made_up.write_points(self.folder / f"grain_parts/tracers/{n}.vtp", np.zeros((count, 3)), arrays)
         made_up.write_index(self.folder / "grain_parts/tracers.pvd", [(0.1 * n, f"tracers/{n}.vtp") for n in (0, 1)])
         frames = thalweg.Run(self.folder).grain_part("tracers")

@@ -45,10 +45,11 @@ def seen(offset, second=0.5, **options):
 
 class VisibleGrains(unittest.TestCase):
     def test_the_covered_share_of_the_perimeter(self):
-        # Of a circle with its centre s from another of the same radius R, the arc within it is 2 acos(s/2R): 60 % of the
-        # perimeter at s = 2 R cos(0.6 pi) < 0, so a single equal disk never covers that much ...
+        # Of a circle with its centre s from another of the same radius R, the arc within it is 2 acos(s/2R): 60 % of
+        # the perimeter at s = 2 R cos(0.6 pi) < 0, so a single equal disk never covers that much ...
         self.assertEqual(seen(0.3), [True, True])
-        # ... and one of radius 0.8 in front covers it up to s where cos(0.6 pi) = (R^2 + s^2 - 0.64)/(2 R s): s = 0.489.
+        # ... and one of radius 0.8 in front covers it up to s where cos(0.6 pi) = (R^2 + s^2 - 0.64)/(2 R s): s =
+        # 0.489.
         self.assertEqual(seen(0.47, 0.8), [True, False])
         self.assertEqual(seen(0.51, 0.8), [True, True])
 
@@ -84,14 +85,16 @@ class VisibleProfiles(unittest.TestCase):
     def test_of_two_grains_above_a_slope(self):
         # The surface rises from 3 to 4; both grains are 1 above it, one layer holds both whole. A third is hidden.
         surface = Surface(np.array([2.0, 8.0]), np.array([3.0, 4.0]))
-        frame = SimpleNamespace(position=np.array([[2.0, 1, 4.0], [8.0, 1, 5.0], [8.05, 2.5, 5.0]]), radius=np.full(3, 0.5),
-                                velocity=np.array([[1.0, 9, 0], [3.0, 9, 0], [50, 50, 50]]))
+        frame = SimpleNamespace(
+            position=np.array([[2.0, 1, 4.0], [8.0, 1, 5.0], [8.05, 2.5, 5.0]]), radius=np.full(3, 0.5),
+            velocity=np.array([[1.0, 9, 0], [3.0, 9, 0], [50, 50, 50]]),
+        )
         sums = VisibleSums(np.array([-0.5, 0.5, 1.5]), 10.0)
         sums.add(frame, surface)
         found = sums.profiles()
         np.testing.assert_allclose(found["areal_fraction"], (0.0, 2 * np.pi / 4 / 10.0), rtol=1e-12)
         np.testing.assert_allclose(found["velocity"][1], (2.0, 0.0), rtol=1e-12)
-        np.testing.assert_allclose(found["temperature"][1], 0.5, rtol=1e-12)   # half of the variance 1 of two components
+        np.testing.assert_allclose(found["temperature"][1], 0.5, rtol=1e-12)  # half of the variance 1 of two components
         self.assertTrue(np.isnan(found["temperature"][0]))
 
 

@@ -72,8 +72,10 @@ class Points(Folder):
         plan = self.plan(vary={"a": [1, 2]}, together=[{"b": 1, "c": [1, 2]}, {"b": 2, "c": [3, 4]}])
         self.assertEqual((plan.keys, plan.naming_keys), (["a", "b", "c"], ["a", "b"]))
         self.assertEqual(self.plan(together=[{"b": 1, "c": 1}, {"b": 1, "c": 2}]).naming_keys, ["b", "c"])
-        self.assertEqual(self.plan(bisect=BISECT, together=[{"bisect.from": 0.1, "b": 1}, {"bisect.from": 0.2, "b": 2}]).naming_keys,
-                         ["b"])
+        self.assertEqual(
+            self.plan(bisect=BISECT, together=[{"bisect.from": 0.1, "b": 1}, {"bisect.from": 0.2, "b": 2}]).naming_keys,
+            ["b"],
+        )
 
     def test_a_run_keeps_its_name_when_an_entry_is_added_that_needs_other_names(self):
         entries = [{"b": 1, "c": 1}, {"b": 2, "c": 1}]
@@ -84,7 +86,9 @@ class Points(Folder):
         self.assertEqual(names, ["b_1", "b_2", "b_2-c_2"])
 
     def test_names_stay_when_values_are_added(self):
-        one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}])
+        one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(
+            vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}]
+        )
         self.assertEqual(name_of(one.points[0], one.naming_keys), name_of(two.points[0], two.naming_keys))
         self.assertEqual(name_of(one.points[0], one.naming_keys), "a_1-b_1")
         self.assertEqual(one.keys, two.keys)   # the columns of thresholds.csv
@@ -94,7 +98,10 @@ class Points(Folder):
         case.write_text("system: grains\ngrains: [{placement: {file: bed.h5}}]\ninitial: {from: begun}\n")
         begun.mkdir(parents=True)
         seen = []
-        for change in (lambda: bed.write_text("some"), lambda: bed.write_text("more"), lambda: (begun / "step_1.h5").write_text("1")):
+        for change in (
+            lambda: bed.write_text("some"), lambda: bed.write_text("more"),
+            lambda: (begun / "step_1.h5").write_text("1"),
+        ):
             change()
             seen.append(inputs_of(case, {}))
         self.assertEqual(len({json.dumps(inputs) for inputs in seen}), 3)
@@ -107,7 +114,9 @@ class Points(Folder):
         self.assertEqual(named_files({"grains": "../bed", "fluid": {"density": "x"}}), set())
         other = self.folder / "other.stl"
         other.write_text("solid")
-        self.assertEqual(set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"})
+        self.assertEqual(
+            set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"}
+        )
 
     def test_of_a_run_to_begin_from_only_the_latest_checkpoint_counts(self):
         case, begun = self.folder / "case.yaml", self.folder / "begun/checkpoints"
@@ -136,33 +145,30 @@ class Points(Folder):
         self.assertEqual(json.dumps(inputs_of(case, {})), seen[-1])
 
     def test_what_cannot_be_meant_is_refused_with_its_key(self):
-        for content, words in (({"very": 1}, "very is not a key here"),
-                               ({"case": "gone.yaml"}, "gone.yaml cannot be read"),
-                               ({"vary": {"a": []}}, "a: give a list of values"),
-                               ({"vary": {"a": {"from": 2, "to": 1}}}, "from a smaller to a larger"),
-                               ({"vary": {"a": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}}, "above 0"),
-                               ({"vary": {"a": {"from": 1, "to": "x"}}}, "a.to: x is not a number"),
-                               ({"vary": {"a": [1]}, "set": {"a": 2}}, "a is given twice"),
-                               ({"ranks": 0}, "ranks: 0"),
-                               ({"bisect": {"key": "a"}}, "bisect.from is missing"),
-                               ({"bisect": BISECT | {"from": 2}}, "no range to search"),
-                               ({"bisect": BISECT | {"width": 0}}, "width above 0"),
-                               ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
-                               ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
-                               ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also"),
-                               ({"bisect": BISECT | {"repeat": {"a": [1]}}, "vary": {"a": [1, 2]}}, "bisect.repeat: a is also"),
-                               ({"bisect": BISECT | {"repeat": {"gravity.slope": [1]}}}, "is what is searched"),
-                               ({"bisect": BISECT | {"holds": "q > 1e"}}, "1e is not a number"),
-                               ({"bisect": "slope"}, "bisect: give keys"),
-                               ({"together": 5}, "together: give a list"),
-                               ({"columns": "simulated_time"}, "columns: give a list"),
-                               ({"case": 5}, "case is missing"),
-                               ({"vary": {"a": {"from": 0.1, "to": 0.5}}}, "takes a count or a step"),
-                               ({"vary": {"a": {"from": 1, "to": 6, "spacing": "log"}}}, "takes a count"),
-                               ({"vary": {"a": {"from": 1, "to": 6, "step": 1, "count": 2}}}, "a count or a step; remove one"),
-                               ({"vary": {"a": {"from": 1, "to": math.inf}}}, "inf is not a number"),
-                               ({"vary": {1: [2]}}, "1 is not a key of the case"),
-                               ({"set": {"a": datetime.date(2026, 1, 1)}}, "neither a number nor text")):
+        for content, words in (
+            ({"very": 1}, "very is not a key here"), ({"case": "gone.yaml"}, "gone.yaml cannot be read"),
+            ({"vary": {"a": []}}, "a: give a list of values"),
+            ({"vary": {"a": {"from": 2, "to": 1}}}, "from a smaller to a larger"),
+            ({"vary": {"a": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}}, "above 0"),
+            ({"vary": {"a": {"from": 1, "to": "x"}}}, "a.to: x is not a number"),
+            ({"vary": {"a": [1]}, "set": {"a": 2}}, "a is given twice"), ({"ranks": 0}, "ranks: 0"),
+            ({"bisect": {"key": "a"}}, "bisect.from is missing"),
+            ({"bisect": BISECT | {"from": 2}}, "no range to search"),
+            ({"bisect": BISECT | {"width": 0}}, "width above 0"), ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
+            ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
+            ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also"),
+            ({"bisect": BISECT | {"repeat": {"a": [1]}}, "vary": {"a": [1, 2]}}, "bisect.repeat: a is also"),
+            ({"bisect": BISECT | {"repeat": {"gravity.slope": [1]}}}, "is what is searched"),
+            ({"bisect": BISECT | {"holds": "q > 1e"}}, "1e is not a number"),
+            ({"bisect": "slope"}, "bisect: give keys"), ({"together": 5}, "together: give a list"),
+            ({"columns": "simulated_time"}, "columns: give a list"), ({"case": 5}, "case is missing"),
+            ({"vary": {"a": {"from": 0.1, "to": 0.5}}}, "takes a count or a step"),
+            ({"vary": {"a": {"from": 1, "to": 6, "spacing": "log"}}}, "takes a count"),
+            ({"vary": {"a": {"from": 1, "to": 6, "step": 1, "count": 2}}}, "a count or a step; remove one"),
+            ({"vary": {"a": {"from": 1, "to": math.inf}}}, "inf is not a number"),
+            ({"vary": {1: [2]}}, "1 is not a key of the case"),
+            ({"set": {"a": datetime.date(2026, 1, 1)}}, "neither a number nor text"),
+        ):
             with self.subTest(content=content), self.assertRaisesRegex(SweepError, words.replace("(", r"\(")):
                 self.plan(**content)
 
@@ -255,14 +261,20 @@ class Bisection(Folder):
 
     def test_asks_first_for_as_many_repetitions_as_may_settle_a_value(self):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT | {"repeat": {"seed": {"from": 1, "to": 5}}}), 0)
-        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
-                         ([1, 2, 3], [4, 5]))
+        self.assertEqual(
+            ([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+            ([1, 2, 3], [4, 5]),
+        )
         self.answer(task.wanted()[0], 1.0)
-        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
-                         ([2, 3], [4, 5]))
+        self.assertEqual(
+            ([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+            ([2, 3], [4, 5]),
+        )
         self.answer(task.wanted()[0], 0.0)
-        self.assertEqual(([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
-                         ([3, 4], [5]))
+        self.assertEqual(
+            ([run.settings["seed"] for run in task.wanted()], [run.settings["seed"] for run in task.spare()]),
+            ([3, 4], [5]),
+        )
 
     def test_the_count_of_what_is_left_is_never_too_small(self):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT), 0)
@@ -298,15 +310,23 @@ class TwoSweepsOfAFolder(Folder):
 class Machine(unittest.TestCase):
     def runs_at_a_time(self, cores, memory, ranks, needed):
         said = io.StringIO()
-        with unittest.mock.patch.dict(os.environ, THALWEG_CORES=str(cores), THALWEG_MEMORY=str(memory)), contextlib.redirect_stdout(said):
+        with unittest.mock.patch.dict(
+            os.environ, THALWEG_CORES=str(cores), THALWEG_MEMORY=str(memory)
+        ), contextlib.redirect_stdout(said):
             return machine.runs_at_a_time(ranks, needed), said.getvalue()
 
     def test_as_many_runs_as_cores_and_memory_allow(self):
         self.assertEqual(self.runs_at_a_time(8, 64e9, 1, 1e9), (8, ""))
         self.assertEqual(self.runs_at_a_time(8, 64e9, 3, 1e9), (2, ""))
         self.assertEqual(self.runs_at_a_time(2, 64e9, 4, 0.0), (1, ""))
-        self.assertEqual(self.runs_at_a_time(8, 25e9, 1, 10e9), (2, "2 runs at a time, though there are cores for 8: each takes about "
-                                                                "10 GB of memory, and 25 GB are free (--jobs overrides this)\n"))
+        self.assertEqual(
+            self.runs_at_a_time(8, 25e9, 1, 10e9),
+            (
+                2,
+                "2 runs at a time, though there are cores for 8: each takes about "
+                "10 GB of memory, and 25 GB are free (--jobs overrides this)\n",
+            ),
+        )
         self.assertEqual(self.runs_at_a_time(8, 5e9, 2, 10e9)[0], 1)
 
     def test_memory_by_what_check_prints(self):
@@ -315,7 +335,9 @@ class Machine(unittest.TestCase):
         self.assertEqual(machine.memory_needed("thalweg: no memory about"), 0.0)
 
     def test_without_the_program_jobs_must_be_given(self):
-        with unittest.mock.patch.dict(os.environ, clear=True), self.assertRaisesRegex(SweepError, "THALWEG_CORES.*--jobs"):
+        with unittest.mock.patch.dict(os.environ, clear=True), self.assertRaisesRegex(
+            SweepError, "THALWEG_CORES.*--jobs"
+        ):
             machine.runs_at_a_time(1, 0.0)
 
 
@@ -334,12 +356,24 @@ class Slurm(Folder):
 class Units(unittest.TestCase):
     def test_units_of_keys_from_the_schema(self):
         length = {"type": "number", "unit": "m"}
-        case = {"properties": {
-            "gravity": {"anyOf": [{"properties": {"magnitude": {"unit": "m/s^2"}, "vector": {"type": "array", "unit": "m/s^2"}}}]},
-            "grains": {"items": {"properties": {
-                "count": {"type": "integer"},
-                "diameter": {"anyOf": [{"properties": {"value": length}}, {"type": "null"}, length]},
-                "contact": {"anyOf": [{"properties": {"damping": {"unit": "kg/(s m^1/2)"}}}]}}}}}}
+        case = {
+            "properties": {
+                "gravity": {
+                    "anyOf": [
+                        {"properties": {"magnitude": {"unit": "m/s^2"}, "vector": {"type": "array", "unit": "m/s^2"}}}
+                    ]
+                },
+                "grains": {
+                    "items": {
+                        "properties": {
+                            "count": {"type": "integer"},
+                            "diameter": {"anyOf": [{"properties": {"value": length}}, {"type": "null"}, length]},
+                            "contact": {"anyOf": [{"properties": {"damping": {"unit": "kg/(s m^1/2)"}}}]},
+                        }
+                    }
+                },
+            }
+        }
         other = {"if": {"properties": {"system": {"const": "fluid"}}}, "then": {"properties": {"name": {"unit": "s"}}}}
         schema = {"allOf": [other, {"if": {"properties": {"system": {"const": "resolved"}}}, "then": case}]}
         units = tables.units_of_keys(schema, "resolved")

@@ -14,7 +14,9 @@ class MergedRows(unittest.TestCase):
             first = [{"run": "a", "q": "1"}, {"run": "b", "q": "2"}, {"run": "b", "q": "3"}, {"run": "c", "q": "4"}]
             self.assertEqual(merged_rows(path, first), first)
             merged = merged_rows(path, [{"run": "d", "q": "6"}, {"run": "b", "q": "5"}])
-            self.assertEqual([(row["run"], row["q"]) for row in merged], [("a", "1"), ("b", "5"), ("c", "4"), ("d", "6")])
+            self.assertEqual(
+                [(row["run"], row["q"]) for row in merged], [("a", "1"), ("b", "5"), ("c", "4"), ("d", "6")]
+            )
             self.assertEqual(read_rows(path), merged)
             self.assertEqual(merged_rows(path, []), merged)
 

@@ -40,14 +40,20 @@ class TwoPhases(MadeUpFolder):
         stress[:, [2, 6]] = 0.4 * pressure[:, None]
         six = np.zeros((60, 6))
         vector = np.zeros((60, 3))
-        write_group(self.folder / "profiles.h5", "stress_balance", {
-            "z": ("m", z), "solid_fraction": ("1", phi), "contact_stress": ("Pa", stress), "grain_fluid_stress": ("Pa", 0 * stress),
-            "lubrication_stress": ("Pa", 0 * stress), "kinetic_stress": ("Pa", six), "fluid_pressure": ("Pa", 0 * z),
-            "grain_velocity": ("m/s", np.column_stack([velocity, 0 * z, 0 * z])),
-            "fluid_velocity": ("m/s", np.column_stack([velocity + 0.1, 0 * z, 0 * z])), "drag_density": ("N/m^3", vector),
-            "granular_temperature": ("m^2/s^2", 1e-4 * phi), "viscous_stress": ("Pa", six), "subgrid_stress": ("Pa", six),
-            "reynolds_stress": ("Pa", six + [0, 0, 0, 0, 5.0, 0]), "drag_function": ("1", 3.0 + 0 * z),
-            "drag_reynolds_number": ("1", 50.0 + 0 * z)})
+        write_group(
+            self.folder / "profiles.h5", "stress_balance",
+            {
+                "z": ("m", z), "solid_fraction": ("1", phi), "contact_stress": ("Pa", stress),
+                "grain_fluid_stress": ("Pa", 0 * stress), "lubrication_stress": ("Pa", 0 * stress),
+                "kinetic_stress": ("Pa", six), "fluid_pressure": ("Pa", 0 * z),
+                "grain_velocity": ("m/s", np.column_stack([velocity, 0 * z, 0 * z])),
+                "fluid_velocity": ("m/s", np.column_stack([velocity + 0.1, 0 * z, 0 * z])),
+                "drag_density": ("N/m^3", vector), "granular_temperature": ("m^2/s^2", 1e-4 * phi),
+                "viscous_stress": ("Pa", six), "subgrid_stress": ("Pa", six),
+                "reynolds_stress": ("Pa", six + [0, 0, 0, 0, 5.0, 0]), "drag_function": ("1", 3.0 + 0 * z),
+                "drag_reynolds_number": ("1", 50.0 + 0 * z),
+            },
+        )
         with h5py.File(self.folder / "profiles.h5", "a") as file:
             for name in ("viscous_stress", "subgrid_stress", "reynolds_stress"):
                 file["stress_balance"][name].attrs["components"] = "xx yy zz xy xz yz"
@@ -72,7 +78,8 @@ class TwoPhases(MadeUpFolder):
         # The deviator has 0.4 p in xz and nothing on the diagonal.
         np.testing.assert_allclose(bed.state.friction[inside], 0.4)
         np.testing.assert_allclose(bed.fluid_stress, 5.0)
-        # The rate of an exponential is the velocity over its length; a central difference over dz is sinh(dz/l)/(dz/l) of it.
+        # The rate of an exponential is the velocity over its length; a central difference over dz is sinh(dz/l)/(dz/l)
+        # of it.
         step = 0.25 / DECAY
         rate = bed.grain_velocity / (DECAY * DIAMETER) * np.sinh(step) / step
         np.testing.assert_allclose(bed.state.shear_rate[5:35], rate[5:35], rtol=1e-9)

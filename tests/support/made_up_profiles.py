@@ -26,8 +26,13 @@ def add_stress_balance(path, diameter):
     with h5py.File(path, "a") as file:
         group = file.create_group("stress_balance")
         group["z"], group["solid_fraction"] = z, np.where(z < 6 * diameter, 0.5, 0.0)
-        add_ones(group, {"grain_velocity": "x y z", "fluid_velocity": "x y z", "contact_stress": FULL,
-                         "grain_fluid_stress": FULL, "lubrication_stress": FULL, "kinetic_stress": HALF, "viscous_stress": HALF,
-                         "subgrid_stress": HALF, "reynolds_stress": HALF}, 60)
+        add_ones(
+            group,
+            {
+                "grain_velocity": "x y z", "fluid_velocity": "x y z", "contact_stress": FULL,
+                "grain_fluid_stress": FULL, "lubrication_stress": FULL, "kinetic_stress": HALF, "viscous_stress": HALF,
+                "subgrid_stress": HALF, "reynolds_stress": HALF,
+            }, 60,
+        )
         for name in ("rotation_stress", "total_stress", "side_wall_stress", "driving_stress"):
             group[name] = np.ones(60)

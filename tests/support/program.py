@@ -87,12 +87,15 @@ class ProgramTest(unittest.TestCase):
         return result
 
     def processes(self):
-        """Ids of the processes of the program that work in the folder of the test. mpirun puts its ranks into groups of their
-        own, and they outlive it for a moment."""
+        """Ids of the processes of the program that work in the folder of the test. mpirun puts its ranks into groups of
+        their own, and they outlive it for a moment."""
         found = []
         for entry in Path("/proc").glob("[0-9]*"):
             try:
-                if entry.joinpath("cwd").resolve() == self.folder and entry.joinpath("exe").resolve() == Path(THALWEG).resolve():
+                if (
+                    entry.joinpath("cwd").resolve() == self.folder
+                    and entry.joinpath("exe").resolve() == Path(THALWEG).resolve()
+                ):
                     found.append(int(entry.name))
             except OSError:   # it has ended
                 pass
@@ -151,8 +154,8 @@ class ProgramTest(unittest.TestCase):
 
 
 class SideBySide:
-    """Runner of unittest.main() that runs four tests at a time: for tests that mostly wait. Not for long runs on several ranks,
-    which are far slower where they share their cores."""
+    """Runner of unittest.main() that runs four tests at a time: for tests that mostly wait. Not for long runs on
+    several ranks, which are far slower where they share their cores."""
     def run(self, suite):
         def flat(tests):
             return [one for test in tests for one in (flat(test) if isinstance(test, unittest.TestSuite) else [test])]

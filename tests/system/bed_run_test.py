@@ -43,11 +43,15 @@ output: {series: {every: 0.02}}
             self.assertEqual((self.folder / out / "bed.h5").read_bytes(), (self.folder / "one/bed.h5").read_bytes())
 
     def test_a_box_of_cells_to_seven_digits_takes_its_own_bed(self):
-        cells = ("--set", "domain.spacing=8.333333e-4", "--set", "domain.size=[0.02, 0.015, 0.06]")   # 24 x 18 x 72, and 4e-8
+        cells = (
+            "--set", "domain.spacing=8.333333e-4", "--set", "domain.size=[0.02, 0.015, 0.06]",
+        )  # 24 x 18 x 72, and 4e-8
         self.run_well("run", self.case, *cells, "--out", "rounded", "--set", "run={until: 0.3}")
         for ranks in (0, 2):
-            self.run_well("run", self.case, *cells, "--out", f"again_{ranks}", "--set", "grains=[{placement: {file: rounded/bed.h5}}]",
-                          "--set", "run={until: 0.02}", ranks=ranks)
+            self.run_well(
+                "run", self.case, *cells, "--out", f"again_{ranks}", "--set",
+                "grains=[{placement: {file: rounded/bed.h5}}]", "--set", "run={until: 0.02}", ranks=ranks,
+            )
         self.assert_same_bed("again_0", "again_2")
 
     def test_the_grains_are_at_rest_on_each_other(self):
@@ -76,13 +80,18 @@ output: {series: {every: 0.02}}
         self.assertIn("a share of 0.9 of the grains at rest", (self.folder / "one/run.log").read_text())
         # All 40 fall at first; the figure is the same on any ranks.
         for out, ranks in (("first", 0), ("two", 2)):
-            self.run_well("run", self.case, "--out", out, *share, "--until", "0.004", "--set", "output.series.every=0.002",
-                          ranks=ranks)
+            self.run_well(
+                "run", self.case, "--out", out, *share, "--until", "0.004", "--set", "output.series.every=0.002",
+                ranks=ranks,
+            )
             self.assertEqual(self.series(out)["restless_grains"].tolist(), [40, 40, 40])
 
     def test_a_fill_is_as_deep_as_it_says(self):
-        fill = ["--set", "grains=[{fill: {depth: 0.024, porosity: 0.45}, diameter: {d16: 3.5e-3, d50: 4.0e-3, d84: 4.6e-3}, "
-                "density: 2550, placement: {pattern: random, seed: 3}}]"]
+        fill = [
+            "--set",
+            "grains=[{fill: {depth: 0.024, porosity: 0.45}, diameter: {d16: 3.5e-3, d50: 4.0e-3, d84: 4.6e-3}, "
+            "density: 2550, placement: {pattern: random, seed: 3}}]",
+        ]
         self.run_well("run", self.case, "--out", "filled", *fill)
         bed = self.bed("filled")
         volume = numpy.pi / 6.0 * ((2.0 * bed["radius"]) ** 3).sum()
@@ -105,8 +114,8 @@ output: {series: {every: 0.02}}
             self.assertEqual(file["bed/periodic"][()].tolist(), [1, 0, 0])
 
     def test_another_run_begins_with_the_bed(self):
-        # One step of 2.04e-4 s: 4.1e-8 m at 2e-4 m/s, and g t^2/2 = 2.04e-7 m while the springs along the contacts, which
-        # the file does not keep, build up again.
+        # One step of 2.04e-4 s: 4.1e-8 m at 2e-4 m/s, and g t^2/2 = 2.04e-7 m while the springs along the contacts,
+        # which the file does not keep, build up again.
         self.run_well("run", self.case, "--out", "next", "--set", self.FILE, "--set", "run={until: 1.0e-4}", ranks=2)
         before, after = self.bed(), self.bed("next")
         numpy.testing.assert_allclose(after["position"], before["position"], rtol=0, atol=2.5e-7)
@@ -141,23 +150,33 @@ output: {series: {every: 0.02}}
     def test_beds_that_do_not_fit_are_refused(self):
         place = "grains.0.placement.file"
         for words, settings in (
-                (["there is no file", "no.h5", place], ["grains=[{placement: {file: no.h5}}]"]),
-                (["not a bed file", place], ["grains=[{placement: {file: run/checkpoints/"
-                                             + self.last_checkpoint("run").name + "}}]"]),
-                (["not an HDF5 file", place], ["grains=[{placement: {file: run/run.log}}]"]),
-                (["periodic along x over 0.02 m", "periodic over 0.03 m"], [self.FILE, "domain.size=[0.03, 0.015, 0.06]"]),
-                (["not periodic over 0.02 m"], [self.FILE, "domain.boundaries.x=no_slip"]),
-                (["outside this case's box", "domain.size"], [self.FILE, "domain.size=[0.02, 0.015, 0.006]"]),
-                (["overlap", "placement.largest_overlap: 1e-08", place],
-                 ["grains=[{placement: {file: run/bed.h5, largest_overlap: 1.0e-8}}]"]),
-                (["no grain in the region"], ["grains=[{placement: {file: run/bed.h5, region: {lower: [0, 0, 0.059], "
-                                              "upper: [0.02, 0.015, 0.06]}}}]"]),
-                (["grains.0.diameter", "the bed file gives it"],
-                 ["grains=[{placement: {file: run/bed.h5}, diameter: 4.0e-3}]"]),
-                (["grains.0.placement.velocities", "only a placement from a file"],
-                 ["grains.0.placement.velocities=zero"]),
-                (["run.until_at_rest.quantile = 1.5", "at most 1"], ["run.until_at_rest.quantile=1.5"]),
-                (["run.until_at_rest.largest_speed", "above 0"], ["run.until_at_rest.largest_speed=0"])):
+            (["there is no file", "no.h5", place], ["grains=[{placement: {file: no.h5}}]"]),
+            (
+                ["not a bed file", place],
+                ["grains=[{placement: {file: run/checkpoints/" + self.last_checkpoint("run").name + "}}]"],
+            ), (["not an HDF5 file", place], ["grains=[{placement: {file: run/run.log}}]"]),
+            (["periodic along x over 0.02 m", "periodic over 0.03 m"], [self.FILE, "domain.size=[0.03, 0.015, 0.06]"]),
+            (["not periodic over 0.02 m"], [self.FILE, "domain.boundaries.x=no_slip"]),
+            (["outside this case's box", "domain.size"], [self.FILE, "domain.size=[0.02, 0.015, 0.006]"]),
+            (
+                ["overlap", "placement.largest_overlap: 1e-08", place],
+                ["grains=[{placement: {file: run/bed.h5, largest_overlap: 1.0e-8}}]"],
+            ),
+            (
+                ["no grain in the region"],
+                [
+                    "grains=[{placement: {file: run/bed.h5, region: {lower: [0, 0, 0.059], "
+                    "upper: [0.02, 0.015, 0.06]}}}]"
+                ],
+            ),
+            (
+                ["grains.0.diameter", "the bed file gives it"],
+                ["grains=[{placement: {file: run/bed.h5}, diameter: 4.0e-3}]"],
+            ),
+            (["grains.0.placement.velocities", "only a placement from a file"], ["grains.0.placement.velocities=zero"]),
+            (["run.until_at_rest.quantile = 1.5", "at most 1"], ["run.until_at_rest.quantile=1.5"]),
+            (["run.until_at_rest.largest_speed", "above 0"], ["run.until_at_rest.largest_speed=0"]),
+        ):
             arguments = [a for setting in settings for a in ("--set", setting)]
             self.assert_refused("check", self.case, *arguments, words=words)
 

@@ -9,7 +9,9 @@ CORRECT = {
     "core/base/types.hpp": "#pragma once\n#include <vector>\n",
     "core/base/error.hpp": '#include "core/base/types.hpp"\n',
     "core/CMakeLists.txt": "thalweg_library(core types.cpp)\n",
-    "CMakeLists.txt": "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io loop driver)\n",
+    "CMakeLists.txt": (
+        "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io loop driver)\n"
+    ),
     "cmake/install.cmake": "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis loop io)\n",
     "core/sums/wide.hpp": '#include "core/base/types.hpp"\n',
     "core/whole.hpp": '#include "core/sums/wide.hpp"\n',
@@ -28,7 +30,7 @@ CORRECT = {
     "driver/case/case.hpp": '#include "analysis/rate.hpp"\n#include "io/archive.hpp"\n',
     "tests/driver/case/case_test.cpp": '#include "driver/case/case.hpp"\n',
     "tests/io/vtk_test.cpp": "#include <vtkImageData.h>\n",
-    "build/release/lbm/generated.hpp": '#include "dem/motion/grain_store.hpp"\n',   # not ours to check
+    "build/release/lbm/generated.hpp": '#include "dem/motion/grain_store.hpp"\n',  # not ours to check
 }
 
 # (file, text, a piece of the complaint)
@@ -55,10 +57,20 @@ PLANTED = [
     ("lbm/bad.cpp", '#include "core/gone.hpp"\n', "does not exist"),
     ("lbm/bad.cpp", "#include <dem/motion/grain_store.hpp>\n", "is a header of this repository"),
     ("lbm/CMakeLists.txt", "target_link_libraries(thalweg_lbm PUBLIC thalweg::dem)\n", "must not link thalweg::dem"),
-    ("CMakeLists.txt", "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io driver)\n", "leaves out loop"),
-    ("CMakeLists.txt", "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io loop waves driver)\n",
-     "does not know what the module waves"),
-    ("cmake/install.cmake", "foreach(module core lbm bodies dem beds model_fluid coupling analysis loop io)\n", "leaves out continuum"),
+    (
+        "CMakeLists.txt",
+        "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io driver)\n",
+        "leaves out loop",
+    ),
+    (
+        "CMakeLists.txt",
+        "foreach(module core lbm bodies dem beds model_fluid coupling continuum analysis io loop waves driver)\n",
+        "does not know what the module waves",
+    ),
+    (
+        "cmake/install.cmake", "foreach(module core lbm bodies dem beds model_fluid coupling analysis loop io)\n",
+        "leaves out continuum",
+    ),
     ("core/base/bad.hpp", '#include "core/sums/wide.hpp"\n', "comes after it"),
     ("core/sums/bad.hpp", '#include "core/whole.hpp"\n', "comes after it"),
     ("docs/bad.md", "One day. " + "TO" + "DO: say more.\n", "finish it"),

@@ -59,7 +59,9 @@ analysis: {transport_rate: {}}
         self.assertLess(abs(bed["density"][:48] / 2550.0 - 1.0).max(), 1e-12)
         sphere = numpy.pi / 6.0 * 0.004 ** 3
         centre_velocity = 0.5 * (bed["velocity"][1:48:2] + bed["velocity"][0:48:2])
-        momentum = 2550.0 * TWIN_VOLUME * centre_velocity.sum(axis=0) + 2000.0 * sphere * bed["velocity"][48:].sum(axis=0)
+        momentum = 2550.0 * TWIN_VOLUME * centre_velocity.sum(axis=0) + 2000.0 * sphere * bed["velocity"][48:].sum(
+            axis=0
+        )
         flux = (TWIN_VOLUME * centre_velocity[:, 0].sum() + sphere * bed["velocity"][48:, 0].sum()) / 4.0e-4
         last = {name: column[-1] for name, column in self.series().items()}
         for axis, name in enumerate("xyz"):
@@ -103,8 +105,10 @@ analysis: {transport_rate: {}}
             first, more, begun = (f"{name}_{what}" for what in ("first", "more", "begun"))
             self.run_well("run", self.case, *given, "--until", "0.05", "--out", first)
             self.run_well("run", self.case, *given, "--restart", first, "--until", "0.06", "--out", more)
-            self.run_well("run", self.case, *given, "--set", f"initial={{from: {first}, fields: [grains]}}", "--until", "0.01",
-                          "--out", begun, ranks=2)
+            self.run_well(
+                "run", self.case, *given, "--set", f"initial={{from: {first}, fields: [grains]}}", "--until", "0.01",
+                "--out", begun, ranks=2,
+            )
             for column in ("position", "velocity", "angular_velocity"):
                 numpy.testing.assert_array_equal(self.bed(begun)[column], self.bed(more)[column], f"{name}: {column}")
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The job scripts of scripts/cluster under a stand-in for the queue, which interrupts a run in every way there is.
 
-Called by ctest: cluster_run_test.py THALWEG MPIEXEC [unittest arguments]. Commands of the queue and launchers are small scripts
-ahead in PATH: mpirun and others are the real one with two ranks; scontrol and qsub only write down what they are asked for; squeue
-and qstat tell what a test has written for them.
+Called by ctest: cluster_run_test.py THALWEG MPIEXEC [unittest arguments]. Commands of the queue and launchers are small
+scripts ahead in PATH: mpirun and others are the real one with two ranks; scontrol and qsub only write down what they
+are asked for; squeue and qstat tell what a test has written for them.
 """
 import json
 import os
@@ -71,16 +71,22 @@ output: {series: {every: 0.01}}
         commands = self.folder / "commands"
         commands.mkdir()
         self.asked = self.folder / "asked"
-        launch = f'echo "$0 $*" >> "{self.folder}/launched"; [ "$1" != --mpi=pmix ] || shift; exec "{shutil.which(MPIEXEC)}" -n 2 "$@"'
-        for name, text in {"mpirun": launch, "srun": launch, "mpiexec": launch, "scontrol": f'echo "$*" >> "{self.asked}"',
-                           "squeue": f'cat "{self.folder}/squeue"', "qstat": f'[ "$*" = "-f 17.server" ] && cat "{self.folder}/qstat"',
-                           }.items():
+        launch = (
+            f'echo "$0 $*" >> "{self.folder}/launched"; [ "$1" != --mpi=pmix ] || shift; exec "{shutil.which(MPIEXEC)}"'
+            ' -n 2 "$@"'
+        )
+        for name, text in {
+            "mpirun": launch, "srun": launch, "mpiexec": launch, "scontrol": f'echo "$*" >> "{self.asked}"',
+            "squeue": f'cat "{self.folder}/squeue"', "qstat": f'[ "$*" = "-f 17.server" ] && cat "{self.folder}/qstat"',
+        }.items():
             (commands / name).write_text(f"#!/bin/sh\n{text}\n")
         (commands / "qsub").write_text(QSUB.format(asked=str(self.asked)))
         for command in commands.iterdir():
             command.chmod(0o755)
         clean = {name: value for name, value in os.environ.items() if not name.startswith(OF_THE_QUEUE)}
-        self.environment = clean | {"PATH": f"{commands}:{os.environ['PATH']}", "THALWEG": THALWEG, "THALWEG_SCRIPTS": str(SCRIPTS)}
+        self.environment = clean | {
+            "PATH": f"{commands}:{os.environ['PATH']}", "THALWEG": THALWEG, "THALWEG_SCRIPTS": str(SCRIPTS),
+        }
 
     def submit(self, left=3600, **environment):
         """left: s until the end of the job, as the queue tells."""
@@ -131,7 +137,9 @@ output: {series: {every: 0.01}}
         self.assert_ends_the_chain(self.submit(), FINISHED)
         self.run_well("run", self.case, "--out", "straight")
         self.assertEqual(self.last_checkpoint(self.RUN).read_bytes(), self.last_checkpoint("straight").read_bytes())
-        self.assertEqual((self.folder / self.RUN / "series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+        self.assertEqual(
+            (self.folder / self.RUN / "series.csv").read_text(), (self.folder / "straight/series.csv").read_text()
+        )
 
     def test_any_interruption_is_survived(self):
         # The node dies before the first checkpoint: everything is killed at once, and the queue runs the job again.
@@ -219,22 +227,33 @@ class Pbs(Turns):
     qstat = QSTAT
 
     def of_queue(self, left):
-        (self.folder / "qstat").write_text(self.qstat.format(walltime=f"{left // 3600:02}:{left // 60 % 60:02}:{left % 60:02}"))
+        (self.folder / "qstat").write_text(
+            self.qstat.format(walltime=f"{left // 3600:02}:{left // 60 % 60:02}:{left % 60:02}")
+        )
         # As CASE=... FOLDER=... qsub -v CASE,FOLDER passes them on.
-        return {"PBS_JOBID": "17.server", "PBS_O_WORKDIR": str(self.folder), "PBS_O_QUEUE": "long", "CASE": str(self.case),
-                "FOLDER": self.RUN}
+        return {
+            "PBS_JOBID": "17.server", "PBS_O_WORKDIR": str(self.folder), "PBS_O_QUEUE": "long", "CASE": str(self.case),
+            "FOLDER": self.RUN,
+        }
 
     def assert_asked_for_the_next(self, asked):
         next_job = json.loads(asked)
         walltime = next_job["options"].pop()
         self.assertRegex(walltime, r"^walltime=\d\d:\d\d:\d\d$")
-        self.assertEqual(next_job["options"], ["-q", "long", "-A", "river", "-N", "bed of glass", "-l",
-                                               "select=4:ncpus=64:mpiprocs=64:mem=50gb:cpu_type=some_long_name_of_a_processor",
-                                               "-l", "place=scatter:excl", "-l"])
+        self.assertEqual(
+            next_job["options"],
+            [
+                "-q", "long", "-A", "river", "-N", "bed of glass", "-l",
+                "select=4:ncpus=64:mpiprocs=64:mem=50gb:cpu_type=some_long_name_of_a_processor", "-l",
+                "place=scatter:excl", "-l",
+            ],
+        )
         variables = next_job["variables"]
         self.assertEqual(variables.pop("THALWEG_WALLTIME", "00:00:01"), "00:00:01")
         self.assertEqual(variables.pop("THALWEG_LAUNCH", "srun --mpi=pmix"), "srun --mpi=pmix")
-        self.assertEqual(variables, {"CASE": str(self.case), "FOLDER": self.RUN, "THALWEG": THALWEG, "THALWEG_SCRIPTS": str(SCRIPTS)})
+        self.assertEqual(
+            variables, {"CASE": str(self.case), "FOLDER": self.RUN, "THALWEG": THALWEG, "THALWEG_SCRIPTS": str(SCRIPTS)}
+        )
         self.assertEqual(next_job["script"], str(SCRIPTS / "pbs.sh"))
 
     def test_walltime_is_that_of_the_job_less_what_has_passed_and_a_margin(self):
@@ -259,11 +278,17 @@ class Pbs(Turns):
         process = self.submit(THALWEG_WALLTIME="00:00:01", PBS_O_QUEUE="")
         said = process.communicate(timeout=60)[0]
         self.assertEqual(process.returncode, 0, said)
-        self.assertEqual(json.loads(self.asked.read_text())["options"],
-                         ["-q", "batch", "-P", "sand", "-N", "thalweg", "-W", "group_list=hydro", "-l", "nodes=4:ppn=64", "-l", "walltime=01:00:00"])
+        self.assertEqual(
+            json.loads(self.asked.read_text())["options"],
+            [
+                "-q", "batch", "-P", "sand", "-N", "thalweg", "-W", "group_list=hydro", "-l", "nodes=4:ppn=64", "-l",
+                "walltime=01:00:00",
+            ],
+        )
 
     def test_term_at_the_end_of_the_job_wants_another_turn(self):
-        """PBS sends it then, and with qdel: a program that has not saved in time, as this one is held up, goes on in the next turn."""
+        """PBS sends it then, and with qdel: a program that has not saved in time, as this one is held up, goes on in
+        the next turn."""
         process = self.begin_turn(left=24)
         begun = time.monotonic()
         pids = self.processes()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A column of the continuum: steady by the stated test, its files, the same bits on any ranks and after a restart, refusals.
+"""A column of the continuum: steady by the stated test, its files, the same bits on any ranks and after a restart,
+refusals.
 
 Called by ctest: continuum_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -50,9 +51,13 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
         self.run_well("run", self.case, "--out", "run", "--until", "10")
         # The water is shallower by 0.62 %, in as many cells.
         steeper = ("--restart", "run", "--set", "gravity.slope=0.0161", "--until", "15")
-        self.assert_refused("run", self.case, *steeper, words=["step_2.h5", "its cells are 0.001004", "0.000998", "gravity"])
+        self.assert_refused(
+            "run", self.case, *steeper, words=["step_2.h5", "its cells are 0.001004", "0.000998", "gravity"]
+        )
         depth = re.search("column.depth of ([0-9.e-]+) m", self.thalweg("run", self.case, *steeper).stderr).group(1)
-        self.run_well("run", self.case, *steeper, "--set", "column.shields_number=null", "--set", f"column.depth={depth}")
+        self.run_well(
+            "run", self.case, *steeper, "--set", "column.shields_number=null", "--set", f"column.depth={depth}"
+        )
 
     def test_it_ends_when_it_is_steady_and_shows_its_profiles(self):
         self.run_well("run", self.case, "--out", "run")

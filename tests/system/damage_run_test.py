@@ -28,8 +28,8 @@ def cut(length):
 
 
 def lost_block(start):
-    """Zeros in place of a kilobyte, as a file system leaves them after a crash; of the first from there on that is not all
-    zeros, as room is that HDF5 has not used."""
+    """Zeros in place of a kilobyte, as a file system leaves them after a crash; of the first from there on that is not
+    all zeros, as room is that HDF5 has not used."""
     def damage(path):
         text = bytearray(path.read_bytes())
         begin = next(n for n in range(int(start * len(text)), len(text)) if any(text[n:n + 64]))

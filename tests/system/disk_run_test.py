@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What lies beside a checkpoint is on the disk before the checkpoint gets its name, as a loss of power would show.
 
-Called by ctest: disk_run_test.py THALWEG MPIEXEC LIBRARY. LIBRARY (order_of_writes.cpp) is preloaded and says what the program
-puts on the disk, and when.
+Called by ctest: disk_run_test.py THALWEG MPIEXEC LIBRARY. LIBRARY (order_of_writes.cpp) is preloaded and says what the
+program puts on the disk, and when.
 """
 import os
 import sys
@@ -42,12 +42,16 @@ analysis:
   entrainment: {grains: [0, 1], rest_time: 1.0e-4, displacement: 0.001, memory: 1.0e-3}
 """
     # Of a step, and what grows or is replaced with every frame and row.
-    OF_STEP = ("grains/grains_{:09d}.vtp", "fluid/fluid_{:09d}.vti", "solids/solids_{:09d}.vtp", "grain_parts/one/one_{:09d}.vtp",
-               "fluid_parts/bottom/bottom_{:09d}.vti", "tracks/part_{:09d}.h5", "probes/part_{:09d}.h5")
+    OF_STEP = (
+        "grains/grains_{:09d}.vtp", "fluid/fluid_{:09d}.vti", "solids/solids_{:09d}.vtp",
+        "grain_parts/one/one_{:09d}.vtp", "fluid_parts/bottom/bottom_{:09d}.vti", "tracks/part_{:09d}.h5",
+        "probes/part_{:09d}.h5",
+    )
     GROWING = ("series.csv", "grains.pvd", "fluid.pvd", "solids.pvd", "grain_parts/one.pvd", "fluid_parts/bottom.pvd")
 
     def events(self):
-        """(what, place in the folder) of the run in order; a file that is named after it was put on the disk counts by its name."""
+        """(what, place in the folder) of the run in order; a file that is named after it was put on the disk counts by
+        its name."""
         return [(what, os.path.relpath(path, self.folder / "run").removesuffix(".partial"))
                 for what, path in (line.split(" ", 1) for line in (self.folder / "order").read_text().splitlines())]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Starts of grains in a whole run: the same events on any ranks and after a restart, a run that does not notice, and torques
-about the hinge that are those of the forces.
+"""Starts of grains in a whole run: the same events on any ranks and after a restart, a run that does not notice, and
+torques about the hinge that are those of the forces.
 
 Called by ctest: entrainment_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -19,8 +19,8 @@ D, DX = 4.8e-3, 0.8e-3   # m
 
 
 def bed():
-    """A staggered layer of fixed grains, rows of four across the flow, and above it two proud grains in its pockets, each on
-    one grain upstream (at a distance X along x) and two downstream."""
+    """A staggered layer of fixed grains, rows of four across the flow, and above it two proud grains in its pockets,
+    each on one grain upstream (at a distance X along x) and two downstream."""
     pitch = 5 * DX
     rows = [[(r + 0.5) * pitch, (k + 0.5 + 0.5 * (r % 2)) * D % (4 * D), 0.5 * D] for r in range(6) for k in range(4)]
     x = (pitch**2 + D**2 / 4) / (2 * pitch)
@@ -56,10 +56,16 @@ analysis:
 
     def events(self, run):
         """By name: attributes and arrays."""
-        return {name: (event.attributes, dict(event)) for name, event in thalweg.Run(self.folder / run).entrainment.items()}
+        return {
+            name: (event.attributes, dict(event)) for name, event in thalweg.Run(self.folder / run).entrainment.items()
+        }
 
     def files_of(self, run):
-        return {path.name: path.read_bytes() for pattern in ("entrainment/*", "series.csv") for path in (self.folder / run).glob(pattern)}
+        return {
+            path.name: path.read_bytes()
+            for pattern in ("entrainment/*", "series.csv")
+            for path in (self.folder / run).glob(pattern)
+        }
 
     def assert_same_events(self, a, b):
         self.assertEqual(list(self.events(a)), list(self.events(b)))
@@ -81,7 +87,9 @@ analysis:
             self.assertEqual(self.files_of(f"on_{ranks}"), self.files_of("one"))
             self.assertEqual(self.last_checkpoint(f"on_{ranks}").read_bytes(), self.last_checkpoint("one").read_bytes())
             self.assertEqual(self.summary(f"on_{ranks}")["entrainment"], self.summary("one")["entrainment"])
-        for out, step in (("one", 600), ("on_2", 1200)):   # what comes later once more, in the same folder: no event twice
+        for out, step in (
+            ("one", 600), ("on_2", 1200),
+        ):  # what comes later once more, in the same folder: no event twice
             self.run_well("run", self.case, "--out", out, "--restart",
                           self.folder / out / f"checkpoints/step_{step}.h5", ranks=2)
             self.assert_same_events(out, "on_4")
@@ -99,8 +107,10 @@ analysis:
         for attributes, arrays in firsts.values():
             proud = PROUD[int(arrays["id"][0]) - 24]
             numpy.testing.assert_allclose(arrays["rest_position"], proud, atol=0.02 * D)
-            numpy.testing.assert_allclose(arrays["submerged_weight"],
-                                          weight * numpy.array([2 * numpy.sin(tilt), 0, -numpy.cos(tilt)]), rtol=1e-12, atol=1e-12)
+            numpy.testing.assert_allclose(
+                arrays["submerged_weight"], weight * numpy.array([2 * numpy.sin(tilt), 0, -numpy.cos(tilt)]),
+                rtol=1e-12, atol=1e-12,
+            )
             way = arrays["position"][-1] - arrays["rest_position"]
             self.assertGreater(numpy.linalg.norm(way), 0.1 * D)   # as little beyond as it goes in a step
             self.assertLess(numpy.linalg.norm(arrays["position"][-2] - arrays["rest_position"]), 0.1 * D)
@@ -108,7 +118,8 @@ analysis:
             self.assertAlmostEqual(arrays["time"][-1] - arrays["time"][0], 0.1, delta=1.01e-4)
             numpy.testing.assert_allclose(numpy.diff(arrays["time"]), 1e-4, rtol=1e-9)
             self.assertEqual(arrays["time"][-1], attributes["time"])
-            # It rolls over the two grains downstream, about an axis across the flow through the points where it touches them.
+            # It rolls over the two grains downstream, about an axis across the flow through the points where it touches
+            # them.
             numpy.testing.assert_allclose(arrays["hinge_axis"], (0, 1, 0), atol=0.05)
             for partner, point in zip(arrays["hinge_partners"], arrays["hinge_points"]):
                 middle = 0.5 * (numpy.array(proud) + FIXED[partner])
@@ -126,7 +137,8 @@ analysis:
                                           -(numpy.cross(arm, arrays["submerged_weight"]) @ axis), rtol=1e-9, atol=1e-15)
             resting = arrays["time"] <= attributes["onset_time"]
             self.assertAlmostEqual(attributes["couple_share"], couple[resting].sum() / fluid[resting].sum(), delta=1e-9)
-            # What moves it: the fluid's torque outweighs that of the weight, and from all that acts on it comes its motion.
+            # What moves it: the fluid's torque outweighs that of the weight, and from all that acts on it comes its
+            # motion.
             self.assertGreater(attributes["largest_torque_ratio"], 1.0)
             mass = 2000 * numpy.pi / 6 * D**3
             force = arrays["fluid_force"] + arrays["contact_force"] + arrays["submerged_weight"]
@@ -134,7 +146,8 @@ analysis:
             given = 1e-4 * force.sum(axis=0)
             numpy.testing.assert_allclose(given, gained, atol=0.05 * numpy.linalg.norm(gained))
             # Contacts: their forces add up to the contact force of every sample, but for the dashpot, which has half a
-            # sub-step less of the grain's acceleration in it there: 0.46 kg/s (restitution 0.5) * 9.8 m/s^2 * 2.5e-6 s = 0.02 W.
+            # sub-step less of the grain's acceleration in it there: 0.46 kg/s (restitution 0.5) * 9.8 m/s^2 * 2.5e-6 s
+            # = 0.02 W.
             added = numpy.zeros_like(arrays["contact_force"])
             numpy.add.at(added, arrays["contact_sample"], arrays["contact_force_each"])
             numpy.testing.assert_allclose(added, arrays["contact_force"], atol=0.02 * weight)
@@ -157,18 +170,24 @@ analysis:
         self.run_well("run", self.case, "--out", "same", "--restart", "run", "--until", "0.01")
         self.assertNotIn("since", self.summary("same")["entrainment"])
         for setting in ("entrainment.displacement=0.2", "reference_diameter=4.0e-3"):
-            said = self.run_well("run", self.case, "--set", "analysis." + setting, "--out", "other", "--restart", "run", "--until",
-                                 "0.01", "--overwrite").stdout
+            said = self.run_well(
+                "run", self.case, "--set", "analysis." + setting, "--out", "other", "--restart", "run", "--until",
+                "0.01", "--overwrite",
+            ).stdout
             self.assertIn("analysis.entrainment: averaging starts at 0.005 s", said)
             self.assertEqual(self.summary("other")["entrainment"]["since"], 0.005)
 
     def test_what_cannot_be_watched_is_refused(self):
         self.assert_refused("run", self.case, "--set", "analysis.entrainment.grains=[26]",
                             words=["analysis.entrainment.grains.0", "ids from 0 to 25"])
-        self.assert_refused("run", self.case, "--set", "run.ramp=0.1", words=["analysis.entrainment.from", "run.ramp, 0.1 s"])
+        self.assert_refused(
+            "run", self.case, "--set", "run.ramp=0.1", words=["analysis.entrainment.from", "run.ramp, 0.1 s"]
+        )
         self.assert_refused("run", self.case, "--set", "domain.boundaries.bottom=periodic", "--set",
                             "domain.boundaries.top=periodic", words=["analysis.entrainment", "name the grains"])
-        self.assert_refused("run", self.case, "--set", "grains=[]", words=["analysis.entrainment", "no grains to watch"])
+        self.assert_refused(
+            "run", self.case, "--set", "grains=[]", words=["analysis.entrainment", "no grains to watch"]
+        )
 
 
 if __name__ == "__main__":

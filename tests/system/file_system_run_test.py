@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """File systems as clusters have them: nodes that do not see yet what others have written, and one without locks.
 
-Called by ctest: file_system_run_test.py THALWEG MPIEXEC LIBRARY [unittest arguments]; the library makes such a file system
-(tests/support/other_file_system.cpp).
+Called by ctest: file_system_run_test.py THALWEG MPIEXEC LIBRARY [unittest arguments]; the library makes such a file
+system (tests/support/other_file_system.cpp).
 """
 import os
 import subprocess
@@ -29,15 +29,19 @@ run: {until: 0.1}
 
 
 class FileSystem(ProgramTest):
-    CASE = SLIDING_GRAINS + "run: {until: 0.02, time_step: 2.5e-5}\noutput: {series: {every: 0.005}, checkpoint: {every: 0.01}}\n"
+    CASE = (
+        SLIDING_GRAINS
+        + "run: {until: 0.02, time_step: 2.5e-5}\noutput: {series: {every: 0.005}, checkpoint: {every: 0.01}}\n"
+    )
 
     def thalweg_there(self, *arguments, ranks=0, **environment):
         environment = {"LD_PRELOAD": LIBRARY, **environment}
         words = [word for name, value in environment.items() for word in (f"{name}={value}",)]
         command = self.command(arguments, ranks)
         at = command.index(program.THALWEG)
-        return subprocess.run(command[:at] + ["env", *words] + command[at:], capture_output=True, text=True, timeout=120,
-                              cwd=self.folder)
+        return subprocess.run(
+            command[:at] + ["env", *words] + command[at:], capture_output=True, text=True, timeout=120, cwd=self.folder
+        )
 
     def run_well_there(self, *arguments, **options):
         result = self.thalweg_there(*arguments, **options)
@@ -55,10 +59,16 @@ class FileSystem(ProgramTest):
         # To another folder, from a bed file, and from another run.
         self.run_well_there("run", self.case, "--restart", "run", "--out", "later", "--until", "0.03", **blind)
         bed = self.folder / "bed.yaml"
-        bed.write_text(self.CASE.replace("{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}",
-                                         "{placement: {file: run/bed.h5}}"))
+        bed.write_text(
+            self.CASE.replace(
+                "{count: 60, diameter: 5.0e-3, density: 2550, placement: {pattern: random, seed: 3}}",
+                "{placement: {file: run/bed.h5}}",
+            )
+        )
         self.run_well_there("run", bed, "--out", "from_bed", **blind)
-        self.run_well_there("run", self.case, "--out", "begun", "--set", "initial.from=run", "--until", "0.005", **blind)
+        self.run_well_there(
+            "run", self.case, "--out", "begun", "--set", "initial.from=run", "--until", "0.005", **blind
+        )
         # What is missing is missing for all, in one sentence.
         refused = self.thalweg_there("run", "nowhere.yaml", "--out", "none", **blind)
         self.assertEqual(refused.returncode, 2)

@@ -58,10 +58,12 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
 
     def test_any_number_of_fluid_outputs(self):
-        parts = ("--set", "output.fluid={every: 1e-3, fields: [velocity, pressure]}", "--set",
-                 "output.fluid_parts=[{name: near_bed, every: 5e-4, fields: [velocity], box: {lower: [0, 0, 0], upper: "
-                 "[0.02, 0.0105, 0.004]}, stride: 2}, {name: plane, every: 1e-3, fields: [pressure], plane: {axis: x, at: "
-                 "0.0052}}]", "--set", "output.checkpoint.every=1e-3")
+        parts = (
+            "--set", "output.fluid={every: 1e-3, fields: [velocity, pressure]}", "--set",
+            "output.fluid_parts=[{name: near_bed, every: 5e-4, fields: [velocity], box: {lower: [0, 0, 0], upper: "
+            "[0.02, 0.0105, 0.004]}, stride: 2}, {name: plane, every: 1e-3, fields: [pressure], plane: {axis: x, at: "
+            "0.0052}}]", "--set", "output.checkpoint.every=1e-3",
+        )
         self.run_well("run", self.case, "--out", "one", "--until", "0.002", *parts)
         self.run_well("run", self.case, "--out", "two", "--until", "0.001", *parts, ranks=2)
         self.run_well("run", self.case, "--out", "two", "--restart", "two", "--until", "0.002", *parts, ranks=4)
@@ -76,12 +78,17 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         numpy.testing.assert_array_equal(bed.arrays["velocity"], whole.arrays["velocity"][:8:2, ::2, ::2])
         numpy.testing.assert_array_equal(plane.arrays["pressure"], whole.arrays["pressure"][:, :, 10:11])
         for axis in range(3):   # every second cell, where it is
-            numpy.testing.assert_allclose(bed.centres(axis), whole.centres(axis)[:2 * len(bed.centres(axis)):2], rtol=1e-12)
+            numpy.testing.assert_allclose(
+                bed.centres(axis), whole.centres(axis)[: 2 * len(bed.centres(axis)) : 2], rtol=1e-12
+            )
 
     def test_frames_in_double_precision(self):
-        frames = ("--set", "fluid.precision=double", "--set", "output.fluid={every: 2e-3, fields: [velocity, pressure]}",
-                  "--set", "output.fluid_parts=[{name: precise, every: 2e-3, precision: double, region: slice_y, fields: "
-                  "[velocity, pressure, grain_id]}]", "--until", "0.002")
+        frames = (
+            "--set", "fluid.precision=double", "--set", "output.fluid={every: 2e-3, fields: [velocity, pressure]}",
+            "--set",
+            "output.fluid_parts=[{name: precise, every: 2e-3, precision: double, region: slice_y, fields: "
+            "[velocity, pressure, grain_id]}]", "--until", "0.002",
+        )
         for out, ranks in (("one", 1), ("four", 4)):
             self.run_well("run", self.case, "--out", out, *frames, ranks=ranks)
         file = "fluid_parts/precise/precise_000000040.vti"
@@ -98,17 +105,24 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
 
     def test_outputs_that_show_nothing_are_refused(self):
         for part, words in (
-                ("{name: a b, every: 1}", ["output.fluid_parts.0.name", "letters, digits and underscores"]),
-                ("{name: a}", ["output.fluid_parts.0.every", "above 0"]),
-                ("{every: 1}", ["output.fluid_parts.0.name"]),
-                ("{name: a, stride: 0}", ["output.fluid_parts.0.stride", "at least 1"]),
-                ("{name: a, every: 1}, {name: a, every: 1}", ["output.fluid_parts", "two of them have the same name"]),
-                ("{name: a, every: 1, plane: {axis: z, at: 0.1}}",
-                 ["output.fluid_parts.0.plane.at = 0.1", "between 0 and 0.013"]),
-                ("{name: a, every: 1, region: slice_x, plane: {axis: z, at: 0.01}}", ["only one of region, box and plane"]),
-                ("{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0.02, 0.01]}}",
-                 ["output.fluid_parts.0.box", "out of the domain"]),
-                ("{name: a, every: 1, box: {lower: [0, 0, 0.005], upper: [0.02, 0.01, 0.005]}}", ["no cell has its centre"])):
+            ("{name: a b, every: 1}", ["output.fluid_parts.0.name", "letters, digits and underscores"]),
+            ("{name: a}", ["output.fluid_parts.0.every", "above 0"]), ("{every: 1}", ["output.fluid_parts.0.name"]),
+            ("{name: a, stride: 0}", ["output.fluid_parts.0.stride", "at least 1"]),
+            ("{name: a, every: 1}, {name: a, every: 1}", ["output.fluid_parts", "two of them have the same name"]),
+            (
+                "{name: a, every: 1, plane: {axis: z, at: 0.1}}",
+                ["output.fluid_parts.0.plane.at = 0.1", "between 0 and 0.013"],
+            ),
+            ("{name: a, every: 1, region: slice_x, plane: {axis: z, at: 0.01}}", ["only one of region, box and plane"]),
+            (
+                "{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0.02, 0.01]}}",
+                ["output.fluid_parts.0.box", "out of the domain"],
+            ),
+            (
+                "{name: a, every: 1, box: {lower: [0, 0, 0.005], upper: [0.02, 0.01, 0.005]}}",
+                ["no cell has its centre"],
+            ),
+        ):
             self.assert_refused("check", self.case, "--set", f"output.fluid_parts=[{part}]", words=words)
 
     ALL_FIELDS = "[velocity, pressure, density, shear_rate, eddy_viscosity, vorticity, q_criterion]"
@@ -169,7 +183,9 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
                                       atol=2e-6)
 
     def test_begins_from_the_field_of_another_run(self):
-        free = ("--set", "fluid.mean_velocity=null", "--set", "output.fluid={every: 0.01, fields: [velocity, pressure]}")
+        free = (
+            "--set", "fluid.mean_velocity=null", "--set", "output.fluid={every: 0.01, fields: [velocity, pressure]}",
+        )
         self.run_well("run", self.case, "--out", "first", *free)
         last = cell_data(self.folder / "first/fluid/fluid_000000400.vti")
         begin = ("--set", "initial={from: first}", "--set", "gravity.slope=0.1")
@@ -258,23 +274,28 @@ output:
     def test_the_check_says_where_the_solids_are(self):
         report = self.run_well("check", self.case).stdout
         self.assertIn("solid 0    sphere from [0.0214, 0.0058, 0.0043]", report)
-        self.assertIn("solid 1    12 triangles from [0.0102, -0.001, -0.001] to [0.0125, 0.017, 0.0026] m: 4.6 x 36 x 7.2",
-                      report)
+        self.assertIn(
+            "solid 1    12 triangles from [0.0102, -0.001, -0.001] to [0.0125, 0.017, 0.0026] m: 4.6 x 36 x 7.2", report
+        )
 
     def test_a_bad_geometry_is_refused(self):
         write_box(self.folder / "open.stl", (0, -1, -1), (2.3, 17, 2.6), leave_out=1)
         (self.folder / "text.stl").write_text("no geometry at all\n")
         good = (self.folder / "sill.stl").read_text()
         (self.folder / "line.stl").write_text(good.replace("vertex 0 -1 -1", "vertex 1,5 -1 -1", 1))
-        for file, words in (("open.stl", ["solids.1.stl", "open.stl", "3 edges belong to one triangle only"]),
-                            ("line.stl", ["solids.1.stl", 'line.stl:4: "1,5" stands where an STL file has a finite coordinate']),
-                            ("text.stl", ["solids.1.stl", "text.stl:1: this is not an STL file"]),
-                            ("none.stl", ["solids.1.stl", "no such file"])):
+        for file, words in (
+            ("open.stl", ["solids.1.stl", "open.stl", "3 edges belong to one triangle only"]),
+            ("line.stl", ["solids.1.stl", 'line.stl:4: "1,5" stands where an STL file has a finite coordinate']),
+            ("text.stl", ["solids.1.stl", "text.stl:1: this is not an STL file"]),
+            ("none.stl", ["solids.1.stl", "no such file"]),
+        ):
             for command in ("run", "check"):
                 self.assert_refused(command, self.case, "--set", f"solids.1.stl={file}", words=words)
         line = self.CASE.splitlines().index("  - {stl: sill.stl, scale: 1.0e-3, translate: [0.0102, 0.0, 0.0]}") + 1
         self.case.write_text(self.CASE.replace("sill.stl", "line.stl"))
-        self.assert_refused("check", self.case, words=[f'case.yaml:{line}: solids.1.stl = "line.stl": ', "line.stl:4: "])
+        self.assert_refused(
+            "check", self.case, words=[f'case.yaml:{line}: solids.1.stl = "line.stl": ', "line.stl:4: "]
+        )
         self.case.write_text(self.CASE)
         self.assert_refused("run", self.case, "--set", "solids.1.translate=[0, 0, 1]", ranks=2,
                             words=["solids.1 covers no cell"])
@@ -285,7 +306,9 @@ output:
         self.assert_refused("check", self.case, "--set", "solids.0={scale: 2}", words=["solids.0", "no shape"])
         self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [0.1, 0, 0]}",
                             words=["solids.0.motion", "0.2 cells a step", "fluid.time_step"])
-        self.assert_refused("check", self.case, "--set", "solids.1.friction=0.3", words=["solids.1.friction", "no grains"])
+        self.assert_refused(
+            "check", self.case, "--set", "solids.1.friction=0.3", words=["solids.1.friction", "no grains"]
+        )
 
     def test_dialects_of_stl_are_the_same_surface(self):
         plain = (self.folder / "sill.stl").read_text()
@@ -294,8 +317,10 @@ output:
         for text in ("\ufeff" + plain, plain.replace("endloop", "end loop"), plain.replace(" 2.6", " 0.26D+01"),
                      plain.replace("\n", "\r\n"), plain.upper()):
             (self.folder / "sill.stl").write_text(text, encoding="utf-8", newline="")
-            self.assertEqual([line for line in self.run_well("check", self.case).stdout.splitlines() if line.startswith("solid 1")],
-                             where)
+            self.assertEqual(
+                [line for line in self.run_well("check", self.case).stdout.splitlines() if line.startswith("solid 1")],
+                where,
+            )
 
     def test_a_surface_in_millimetres_is_noticed(self):
         self.assert_refused("check", self.case, "--set", "solids.1.scale=1", words=[
@@ -303,8 +328,10 @@ output:
             "millimetres, give scale: 0.001"])
         self.assert_refused("check", self.case, "--set", "solids.1.translate=[1e12, 0, 0]",
                             words=["the solid extends from 1e+12 to 1e+12 m along x, and the box from 0 to 0.024 m"])
-        warning = "warning    The surface solids.1 is 0.36 m long along y, 22.5 times the box: if its file is in millimetres, " \
-                  "consider solids.1.scale: 2e-05."
+        warning = (
+            "warning    The surface solids.1 is 0.36 m long along y, 22.5 times the box: if its file is in millimetres,"
+            " consider solids.1.scale: 2e-05."
+        )
         self.assertIn(warning, self.run_well("check", self.case, "--set", "solids.1.scale=0.02").stdout)
         self.assertNotIn("millimetres", self.run_well("check", self.case).stdout)
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs whose disk is full, or whose folder cannot be written: what they say, how they end, and what is left.
 
-Called by ctest: full_disk_run_test.py THALWEG MPIEXEC [unittest arguments]. The full disk is a small file system in memory,
-for which the test has to be allowed to mount one; it is skipped otherwise.
+Called by ctest: full_disk_run_test.py THALWEG MPIEXEC [unittest arguments]. The full disk is a small file system in
+memory, for which the test has to be allowed to mount one; it is skipped otherwise.
 """
 import os
 import re
@@ -27,8 +27,9 @@ class SmallDisks(ProgramTest):
         """A file system of its own; the test is skipped where that is not allowed."""
         disk = self.folder / f"disk_{kilobytes}"
         disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k{options}", "none", disk], capture_output=True,
-                                 text=True)
+        mounted = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k{options}", "none", disk], capture_output=True, text=True
+        )
         if mounted.returncode != 0:
             self.skipTest(f"no file system can be mounted here: {mounted.stderr.strip()}")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
@@ -88,8 +89,10 @@ class NoPermission(SmallDisks):
         self.assert_refused("run", self.case, "--out", "locked/run",
                             words=["locked/run: cannot create the folder: Permission denied"])
         self.run_well("run", self.case, "--until", "0.05")
-        for path, words in (("run", "run: cannot write to the folder"), ("run/checkpoints", "run/checkpoints: cannot write to it"),
-                            ("run/run.log", "run/run.log: cannot write to it")):
+        for path, words in (
+            ("run", "run: cannot write to the folder"), ("run/checkpoints", "run/checkpoints: cannot write to it"),
+            ("run/run.log", "run/run.log: cannot write to it"),
+        ):
             before = (self.folder / path).stat().st_mode
             (self.folder / path).chmod(0o555)
             self.assert_refused("run", self.case, "--restart", "run", words=[words, "Permission denied"])

@@ -71,7 +71,9 @@ output:
     def test_they_show_what_is_asked_for(self):
         self.run_well("run", self.case, ranks=2)
         run = Run(self.folder / "run")
-        self.assertEqual([len(run.grain_part(name)) for name in ("tracers", "spheres", "falling", "nobody")], [9, 5, 5, 3])
+        self.assertEqual(
+            [len(run.grain_part(name)) for name in ("tracers", "spheres", "falling", "nobody")], [9, 5, 5, 3]
+        )
         whole = run.grains[4]
         self.assertEqual(set(whole.arrays) - {"position"}, ALL_FIELDS)
         self.assertEqual(whole.population.tolist(), 24 * [0] + 10 * [1] + 3 * [2])
@@ -84,8 +86,10 @@ output:
         height = whole.position[:, 2]
         places["falling"] = numpy.flatnonzero((height >= 0.03) & (height <= 0.05)).tolist()
         self.assertTrue(0 < len(places["falling"]) < 37)
-        fields = {"tracers": ALL_FIELDS, "spheres": {"density", "id", "velocity", "radius"}, "falling": {"id", "radius"},
-                  "nobody": {"contact_stress", "radius"}}
+        fields = {
+            "tracers": ALL_FIELDS, "spheres": {"density", "id", "velocity", "radius"}, "falling": {"id", "radius"},
+            "nobody": {"contact_stress", "radius"},
+        }
         for name, chosen in places.items():
             frame = run.grain_part(name)[-1]
             self.assertEqual(frame.time, whole.time)
@@ -130,8 +134,10 @@ output:
         self.assertEqual(self.last_checkpoint("unseen").read_bytes(), self.last_checkpoint("one").read_bytes())
 
     def test_frames_with_some_fields_only(self):
-        self.run_well("run", self.case, "--until", "0.001", "--set", "output.grains.fields=[speed, population]", "--set",
-                      "output.grain_parts=[]")
+        self.run_well(
+            "run", self.case, "--until", "0.001", "--set", "output.grains.fields=[speed, population]", "--set",
+            "output.grain_parts=[]",
+        )
         frame = Run(self.folder / "run").grains[1]
         self.assertEqual(list(frame.arrays), ["position", "radius", "speed", "population"])
         self.assertEqual(len(frame), 37)
@@ -140,36 +146,50 @@ output:
 
     def test_the_check_counts_their_space(self):
         def space(*settings):
-            line = [l for l in self.run_well("check", self.case, *settings).stdout.splitlines() if l.startswith("disk")][0]
+            line = [
+                l for l in self.run_well("check", self.case, *settings).stdout.splitlines() if l.startswith("disk")
+            ][0]
             words = line.replace(",", "").split()
             return float(words[words.index("grains") + 1])   # MB
         # 5 frames of 37 grains with 34 numbers, 9 of 3 with 34, 5 of 10 with 11, 5 of 37 with 7, 3 of 1 with 15.
-        self.assertAlmostEqual(space(), 8e-6 * (5 * 37 * 34 + 9 * 3 * 34 + 5 * 10 * 11 + 5 * 37 * 7 + 3 * 15), delta=2e-4)
+        self.assertAlmostEqual(
+            space(), 8e-6 * (5 * 37 * 34 + 9 * 3 * 34 + 5 * 10 * 11 + 5 * 37 * 7 + 3 * 15), delta=2e-4
+        )
         self.assertAlmostEqual(space("--set", "output.grain_parts=[]", "--set", "output.grains.fields=[id]"),
                                8e-6 * 5 * 37 * 7, delta=6e-5)
 
     def test_what_there_is_not_is_refused(self):
         part = "output.grain_parts.0"
         for given, words in (
-                ("{name: a b, every: 1}", [f"{part}.name", "letters, digits and underscores"]),
-                ("{name: a}", [f"{part}.every", "above 0"]),
-                ("{name: a, every: 1}, {name: a, every: 1}", ["output.grain_parts", "two of them have the same name"]),
-                ("{name: a, every: 1, ids: []}", [f"{part}.ids", "a list of whole numbers"]),
-                ("{name: a, every: 1, ids: [3, -1]}", [f"{part}.ids.1 = -1", "at least 0"]),
-                ("{name: a, every: 1, ids: [3, 37]}", [f"{part}.ids.1 = 37", "no such grain", "0 to 36"]),
-                ("{name: a, every: 1, ids: [3, 3]}", [f"{part}.ids.1 = 3", "twice"]),
-                ("{name: a, every: 1, population: 3}", [f"{part}.population = 3", "no such population", "0 to 2"]),
-                ("{name: a, every: 1, population: -1}", [f"{part}.population = -1", "at least 0"]),
-                ("{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0, 0.01]}}", [f"{part}.box", "no volume"]),
-                ("{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0.02, 0.07]}}", [f"{part}.box", "out of the domain"]),
-                ("{name: a, every: 1, fields: [mass]}", [f"{part}.fields.0 = \"mass\"", "one of id, clump, radius"]),
-                ("{name: a, every: 1, fields: []}", [f"{part}.fields", "a list of some of"]),
-                ("{name: a, every: 1, fields: [fluid_force]}", [f"{part}.fields.0 = \"fluid_force\"", "no fluid"]),
-                ("{name: a, every: 1, fields: [id, fluid_stress]}", [f"{part}.fields.1 = \"fluid_stress\"", "grain_stress: true"])):
+            ("{name: a b, every: 1}", [f"{part}.name", "letters, digits and underscores"]),
+            ("{name: a}", [f"{part}.every", "above 0"]),
+            ("{name: a, every: 1}, {name: a, every: 1}", ["output.grain_parts", "two of them have the same name"]),
+            ("{name: a, every: 1, ids: []}", [f"{part}.ids", "a list of whole numbers"]),
+            ("{name: a, every: 1, ids: [3, -1]}", [f"{part}.ids.1 = -1", "at least 0"]),
+            ("{name: a, every: 1, ids: [3, 37]}", [f"{part}.ids.1 = 37", "no such grain", "0 to 36"]),
+            ("{name: a, every: 1, ids: [3, 3]}", [f"{part}.ids.1 = 3", "twice"]),
+            ("{name: a, every: 1, population: 3}", [f"{part}.population = 3", "no such population", "0 to 2"]),
+            ("{name: a, every: 1, population: -1}", [f"{part}.population = -1", "at least 0"]),
+            ("{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0, 0.01]}}", [f"{part}.box", "no volume"]),
+            (
+                "{name: a, every: 1, box: {lower: [0, 0, 0], upper: [0.02, 0.02, 0.07]}}",
+                [f"{part}.box", "out of the domain"],
+            ), ("{name: a, every: 1, fields: [mass]}", [f"{part}.fields.0 = \"mass\"", "one of id, clump, radius"]),
+            ("{name: a, every: 1, fields: []}", [f"{part}.fields", "a list of some of"]),
+            ("{name: a, every: 1, fields: [fluid_force]}", [f"{part}.fields.0 = \"fluid_force\"", "no fluid"]),
+            (
+                "{name: a, every: 1, fields: [id, fluid_stress]}",
+                [f"{part}.fields.1 = \"fluid_stress\"", "grain_stress: true"],
+            ),
+        ):
             self.assert_refused("check", self.case, "--set", f"output.grain_parts=[{given}]", words=words)
-        self.assert_refused("run", self.case, "--set", "output.grains.fields=[colour]", words=["output.grains.fields.0"])
+        self.assert_refused(
+            "run", self.case, "--set", "output.grains.fields=[colour]", words=["output.grains.fields.0"]
+        )
         self.case.write_text(self.CASE.replace("fields: [id]}", "fields: [id, orientations]}"))
-        self.assert_refused("check", self.case, words=["case.yaml:", "output.grain_parts.2.fields.1 = \"orientations\""])
+        self.assert_refused(
+            "check", self.case, words=["case.yaml:", "output.grain_parts.2.fields.1 = \"orientations\""]
+        )
 
 
 if __name__ == "__main__":

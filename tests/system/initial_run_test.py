@@ -60,8 +60,9 @@ run: {until: 0.1}
         self.run_well("run", self.case, "--out", "first")
         self.assert_goes_on(0.00505, "--set", "initial.fields=[grains, fluid]", ranks=2)
         # Without the fluid it is another flow.
-        self.run_well("run", self.case, "--set", "initial={from: first, fields: [grains]}", "--until", "0.00505", "--out",
-                      "alone")
+        self.run_well(
+            "run", self.case, "--set", "initial={from: first, fields: [grains]}", "--until", "0.00505", "--out", "alone"
+        )
         self.assertGreater(abs(self.grains("alone")["velocity"] - self.grains("continued")["velocity"]).max(), 1e-4)
 
     def test_dry_grains_go_on_with_their_springs_and_into_a_fluid(self):
@@ -71,14 +72,18 @@ run: {until: 0.1}
         self.run_well("run", self.case, "--out", "first")
         moved = self.assert_goes_on(0.01)
         self.assertGreater(len(moved["position"]), 5)
-        self.run_well("run", wet, "--set", "initial={from: first, fields: [grains]}", "--until", "0.0001", "--out", "wet")
+        self.run_well(
+            "run", wet, "--set", "initial={from: first, fields: [grains]}", "--until", "0.0001", "--out", "wet"
+        )
         # A step or two of 1e-4 s at less than 0.25 m/s.
         numpy.testing.assert_allclose(self.grains("wet")["position"], self.grains("first")["position"], atol=5e-5)
 
     def test_grains_of_another_run_under_a_flow_of_this_one(self):
         self.run_well("run", self.case, "--out", "first")
         begin = ("--set", "initial.from=first", "--set", "initial.fluid.uniform=[0.25, 0, 0]")
-        self.run_well("run", self.case, *begin, "--set", "initial.fields=[grains]", "--until", "0.0001", "--out", "flow")
+        self.run_well(
+            "run", self.case, *begin, "--set", "initial.fields=[grains]", "--until", "0.0001", "--out", "flow"
+        )
         numpy.testing.assert_allclose(self.grains("flow")["position"], self.grains("first")["position"], atol=5e-5)
         # The first row is the state at the start, up to what gravity along the bed does in half a step of 1e-4 s.
         half_step = 9.8 * numpy.sin(numpy.arctan(0.1)) * 0.5e-4
@@ -103,9 +108,13 @@ run: {until: 0.01}
         dry, flow = (self.folder / name for name in ("dry.yaml", "flow.yaml"))
         dry.write_text(self.DRY)
         flow.write_text(self.FLOW)
-        frames = ("--set", "output={grains: {every: 0.01}, fluid: {every: 0.01, fields: [velocity, pressure, grain_id]}}")
+        frames = (
+            "--set", "output={grains: {every: 0.01}, fluid: {every: 0.01, fields: [velocity, pressure, grain_id]}}",
+        )
         self.run_well("run", dry, "--set", "gravity.slope=0", "--until", "0.3", "--out", "bed")
-        self.run_well("run", flow, *frames[:1], "output.fluid={every: 0.01, fields: [velocity, pressure]}", "--out", "flow")
+        self.run_well(
+            "run", flow, *frames[:1], "output.fluid={every: 0.01, fields: [velocity, pressure]}", "--out", "flow"
+        )
         begin = ("--set", "initial.from={grains: bed, fluid: flow}", "--until", "0.002", *frames)
         for out, ranks in (("one", 1), ("two", 2), ("four", 4)):
             self.run_well("run", self.case, *begin, "--out", out, ranks=ranks)
@@ -144,15 +153,16 @@ run: {until: 0.01}
         self.run_well("run", dry, "--until", "0.001", "--out", "bed")
         self.run_well("run", flow, "--until", "0.001", "--out", "flow")
         for initial, words in (
-                ("{from: {grains: nowhere, fluid: flow}}", ["case.yaml", "initial.from.grains", "nowhere", "no such file"]),
-                ("{from: {grains: bed, fluid: nowhere}}", ["case.yaml", "initial.from.fluid", "nowhere", "no such file"]),
-                ("{from: {grains: flow, fluid: flow}}", ["initial.from.grains", "holds no grains"]),
-                ("{from: {grains: bed, fluid: bed}}", ["initial.from.fluid", "holds no fluid"]),
-                ("{from: {run: bed, fluid: flow}}", ["initial.from.run", "either run"]),
-                ("{from: {grains: ''}}", ["initial.from.grains", "give a run folder"]),
-                ("{from: {grians: bed}}", ["initial.from.grians", "did you mean initial.from.grains"]),
-                ("{from: {grains: bed, fluid: flow}, fields: [grains]}", ["initial.fields", "remove this key"]),
-                ("{from: {fluid: flow}, fluid: {uniform: [0.1, 0, 0]}}", ["initial.from", "given twice"])):
+            ("{from: {grains: nowhere, fluid: flow}}", ["case.yaml", "initial.from.grains", "nowhere", "no such file"]),
+            ("{from: {grains: bed, fluid: nowhere}}", ["case.yaml", "initial.from.fluid", "nowhere", "no such file"]),
+            ("{from: {grains: flow, fluid: flow}}", ["initial.from.grains", "holds no grains"]),
+            ("{from: {grains: bed, fluid: bed}}", ["initial.from.fluid", "holds no fluid"]),
+            ("{from: {run: bed, fluid: flow}}", ["initial.from.run", "either run"]),
+            ("{from: {grains: ''}}", ["initial.from.grains", "give a run folder"]),
+            ("{from: {grians: bed}}", ["initial.from.grians", "did you mean initial.from.grains"]),
+            ("{from: {grains: bed, fluid: flow}, fields: [grains]}", ["initial.fields", "remove this key"]),
+            ("{from: {fluid: flow}, fluid: {uniform: [0.1, 0, 0]}}", ["initial.from", "given twice"]),
+        ):
             for command in ("check", "run"):
                 self.assert_refused(command, self.case, "--set", f"initial={initial}", words=words)
         for command in ("check", "run"):
@@ -175,7 +185,9 @@ run: {until: 0.01}
                          ["velocity"].astype(float) for out in ("first", "finer"))
         # Means over the box: interpolation keeps them but for the half cells next to the walls and what grains cover.
         self.assertGreater(abs(before).max(), 0.01)
-        numpy.testing.assert_allclose(after.mean(axis=(0, 1, 2)), before.mean(axis=(0, 1, 2)), atol=0.05 * abs(before).mean())
+        numpy.testing.assert_allclose(
+            after.mean(axis=(0, 1, 2)), before.mean(axis=(0, 1, 2)), atol=0.05 * abs(before).mean()
+        )
 
     def test_grains_that_are_taken_must_be_those_of_the_case(self):
         """Else the run would divide the transport of its own grains by the diameter of others."""
@@ -185,12 +197,18 @@ run: {until: 0.01}
                                   ("density", "2000", ["mass"]), ("fixed", "true", ["motion"]),
                                   ("contact", "{friction: 0.1}", ["material"])):
             for command, ranks in (("check", 0), ("run", 0), ("run", 2)):
-                self.assert_refused(command, self.case, "--set", "initial.from=first", "--set", f"grains.0.{key}={value}",
-                                    words=["initial.from", *words], ranks=ranks)
+                self.assert_refused(
+                    command, self.case, "--set", "initial.from=first", "--set", f"grains.0.{key}={value}",
+                    words=["initial.from", *words], ranks=ranks,
+                )
         # The bed file describes them; a placement that would not fit is not used.
-        for placement in ("{file: first/bed.h5}", "{pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.007]}}"):
-            case = self.DRY.replace("placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}",
-                                    f"placement: {placement}")
+        for placement in (
+            "{file: first/bed.h5}", "{pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.007]}}",
+        ):
+            case = self.DRY.replace(
+                "placement: {pattern: uniform, region: {lower: [0, 0, 0], upper: [0.0128, 0.0128, 0.012]}}",
+                f"placement: {placement}",
+            )
             if "file" in placement:
                 case = case.replace("count: 6, diameter: 5.0e-3, density: 2550, ", "")
             self.case.write_text(case)

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """A run on two ranks that is killed again and again, and goes on each time on other ranks, to the same bits.
 
-Called by ctest: kill_run_test.py THALWEG MPIEXEC NUMBER_OF_KILLS [SEED]. SIGKILL to mpirun and its ranks at once, as when a
-node fails: every fourth time at a random moment, else within the writing of a checkpoint, of a part of the records or of a
-frame, as soon as its unfinished file is seen and a random moment later. The run writes a checkpoint every few steps, and
-whatever a run can write beside it; in the end every file must be that of a run that was never killed.
+Called by ctest: kill_run_test.py THALWEG MPIEXEC NUMBER_OF_KILLS [SEED]. SIGKILL to mpirun and its ranks at once, as
+when a node fails: every fourth time at a random moment, else within the writing of a checkpoint, of a part of the
+records or of a frame, as soon as its unfinished file is seen and a random moment later. The run writes a checkpoint
+every few steps, and whatever a run can write beside it; in the end every file must be that of a run that was never
+killed.
 """
 import os
 import random
@@ -88,8 +89,10 @@ analysis:
             pass
 
     def begin(self, ranks):
-        return subprocess.Popen(self.command(("run", self.case, "--out", "run", "--resume"), ranks), cwd=self.folder, stdout=subprocess.DEVNULL,
-                                stderr=subprocess.PIPE, text=True, start_new_session=True)
+        return subprocess.Popen(
+            self.command(("run", self.case, "--out", "run", "--resume"), ranks), cwd=self.folder,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        )
 
     def wait_until(self, happened, process, seconds):
         end = time.monotonic() + seconds
@@ -116,8 +119,10 @@ analysis:
         found, expected = self.results_of(run), self.results_of(other)
         self.assertEqual(sorted(found), sorted(expected))
         self.assertEqual([name for name in found if found[name] != expected[name]], [])
-        for kind in ("series.csv", "profiles.h5", "grains.pvd", "fluid.pvd", "grains/", "fluid/", "grain_parts/some/",
-                     "fluid_parts/bottom/", "tracks/part", "probes/part", "entrainment/part", "checkpoints/step", "bed.h5"):
+        for kind in (
+            "series.csv", "profiles.h5", "grains.pvd", "fluid.pvd", "grains/", "fluid/", "grain_parts/some/",
+            "fluid_parts/bottom/", "tracks/part", "probes/part", "entrainment/part", "checkpoints/step", "bed.h5",
+        ):
             self.assertTrue(any(name.startswith(kind) for name in found), kind)
         self.assertGreaterEqual(len(thalweg.Run(self.folder / run).entrainment), 3)
 
@@ -167,7 +172,9 @@ analysis:
         self.run_well("run", self.case, "--out", "straight", ranks=2)
         self.assert_same_results("run", "straight")
         for ranks in self.RANKS:
-            self.assertEqual(self.last_checkpoint(f"end_{ranks}").read_bytes(), self.last_checkpoint("straight").read_bytes())
+            self.assertEqual(
+                self.last_checkpoint(f"end_{ranks}").read_bytes(), self.last_checkpoint("straight").read_bytes()
+            )
             self.assert_same_rest(f"end_{ranks}", "straight", begin)
 
 

@@ -12,7 +12,8 @@ from program import ProgramTest
 
 
 class ManyRanksRun(ProgramTest):
-    # Everything moves: grains fall, drift across the borders between ranks and the periodic faces, and meet the side walls.
+    # Everything moves: grains fall, drift across the borders between ranks and the periodic faces, and meet the side
+    # walls.
     CASE = """
 system: resolved
 name: wide channel
@@ -47,7 +48,9 @@ analysis:
         self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
         for name in ["series.csv", *(str(path.relative_to(self.folder / "one")) for path in
                                      sorted((self.folder / "one").glob("*/*.vt?")))]:
-            self.assertEqual((self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), f"{out}: {name}")
+            self.assertEqual(
+                (self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), f"{out}: {name}"
+            )
 
     def test_the_same_bits(self):
         self.run_well("run", self.case, "--out", "one")

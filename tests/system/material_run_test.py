@@ -41,8 +41,8 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
             self.assertAlmostEqual(v[1, 0] - v[0, 0], mixed, delta=2e-3)
 
     def test_friction_of_two_materials_is_the_geometric_mean(self):
-        # The first grain comes in at 45 degrees in a sliding impact: mu (1 + e) v_n m/2 of tangential momentum, half the
-        # relative speed after (Coulomb all the way: v_t/v_n = 1 > 7/2 mu (1 + e) = 0.665 for mu = 0.1).
+        # The first grain comes in at 45 degrees in a sliding impact: mu (1 + e) v_n m/2 of tangential momentum, half
+        # the relative speed after (Coulomb all the way: v_t/v_n = 1 > 7/2 mu (1 + e) = 0.665 for mu = 0.1).
         v = self.velocities("grains.0.velocity=[0.5, 0.0, 0.0]", "grains.1.velocity=[-0.5, 1.0, 0.0]",
                             "grains.1.placement.positions=[[0.0150001, 0.01, 0.01]]", "run.until=1.0e-3",
                             "grains.0.contact.friction=0.2", "grains.1.contact.friction=0.05")
@@ -100,26 +100,31 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
                         "analysis.transport_rate={}", "gravity={magnitude: 0}", "run={until: 1.0e-4}")
         with h5py.File(self.folder / "run/bed.h5") as file:
             self.assertTrue((file["grains/position"][:, 1] == 0.004).all())
-        self.assertAlmostEqual(self.summary("run")["transport_rate"]["q_s_mean"], 12 * numpy.pi / 4 * 25e-6 * 0.5 / 0.04,
-                               delta=1e-12)
+        self.assertAlmostEqual(
+            self.summary("run")["transport_rate"]["q_s_mean"], 12 * numpy.pi / 4 * 25e-6 * 0.5 / 0.04, delta=1e-12
+        )
         (self.folder / "bed.h5").write_bytes(first)
         self.velocities(*disks[:-1], "grains=[{placement: {file: bed.h5}}]", "run={until: 1.0e-4}")
         all_of = [a for setting in disks for a in ("--set", setting)]
-        for words, change in ((["disks 0.004 m thick", "spheres"], "disks=null"),
-                              (["give y: periodic"], "domain.boundaries.y=no_slip"),
-                              (["gravity.vector", "0 along y"], "gravity={vector: [0, 1, -9.8]}"),
-                              (["grains.0.velocity", "0 along y"], "grains.0.velocity=[0, 1, 0]"),
-                              (["grains.0.angular_velocity", "0 along x and z"], "grains.0.angular_velocity=[1, 0, 0]")):
+        for words, change in (
+            (["disks 0.004 m thick", "spheres"], "disks=null"), (["give y: periodic"], "domain.boundaries.y=no_slip"),
+            (["gravity.vector", "0 along y"], "gravity={vector: [0, 1, -9.8]}"),
+            (["grains.0.velocity", "0 along y"], "grains.0.velocity=[0, 1, 0]"),
+            (["grains.0.angular_velocity", "0 along x and z"], "grains.0.angular_velocity=[1, 0, 0]"),
+        ):
             start = ["--set", "grains=[{placement: {file: bed.h5}}]"] if change == "disks=null" else []
             self.assert_refused("check", self.case, *all_of, *start, "--set", change, words=words)
 
     def test_a_moving_floor_rubs_grains_along(self):
-        # About the line of contact the angular momentum of a sphere at rest stays zero: it ends rolling at 2/7 of the speed
-        # of the floor, after 2 U/(7 mu g) = 13 ms. The friction spring leaves a swing below 1 % (2e-3 as it sets in).
-        v = self.velocities("grains=[{diameter: 5.0e-3, density: 2550, placement: {positions: [[0.01, 0.01, 2.5e-3]]}}]",
-                            "contact={restitution: 0.5, tangential_damping: 0.5}", "gravity={magnitude: 9.8}",
-                            "domain.boundaries.bottom={type: moving, velocity: [0.2, 0, 0]}",
-                            "analysis={wall_forces: {}}", "run={until: 0.05, time_step: 4.0e-6}")
+        # About the line of contact the angular momentum of a sphere at rest stays zero: it ends rolling at 2/7 of the
+        # speed of the floor, after 2 U/(7 mu g) = 13 ms. The friction spring leaves a swing below 1 % (2e-3 as it sets
+        # in).
+        v = self.velocities(
+            "grains=[{diameter: 5.0e-3, density: 2550, placement: {positions: [[0.01, 0.01, 2.5e-3]]}}]",
+            "contact={restitution: 0.5, tangential_damping: 0.5}", "gravity={magnitude: 9.8}",
+            "domain.boundaries.bottom={type: moving, velocity: [0.2, 0, 0]}", "analysis={wall_forces: {}}",
+            "run={until: 0.05, time_step: 4.0e-6}",
+        )
         self.assertAlmostEqual(v[0, 0], 0.2 * 2 / 7, delta=0.01 * 0.2)
         # The floor has carried its weight since the bump of the start is damped out; the lid carries nothing.
         weight = 2550 * numpy.pi / 6 * 5e-3 ** 3 * 9.8

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs of 1e5 steps, in which the memory of the program may not grow.
 
-Called by ctest: memory_run_test.py THALWEG MPIEXEC [unittest arguments]. The resident set of the only process is looked at
-again and again. After two fifths of a run it may be larger by half a megabyte than before, since the C library takes and gives
-back such amounts: a loss of nine bytes a step, or of nine kilobytes with every frame, would be more.
+Called by ctest: memory_run_test.py THALWEG MPIEXEC [unittest arguments]. The resident set of the only process is looked
+at again and again. After two fifths of a run it may be larger by half a megabyte than before, since the C library takes
+and gives back such amounts: a loss of nine bytes a step, or of nine kilobytes with every frame, would be more.
 """
 import re
 import subprocess
@@ -67,7 +67,9 @@ class Memory(ProgramTest):
     def check_growth(self, text, until):
         self.case.write_text(text)
         with open(self.folder / "printed.txt", "w") as printed:
-            process = subprocess.Popen(self.command(["run", self.case], 0), cwd=self.folder, stdout=printed, stderr=printed)
+            process = subprocess.Popen(
+                self.command(["run", self.case], 0), cwd=self.folder, stdout=printed, stderr=printed
+            )
         self.addCleanup(process.kill)
         early, late = [], []
         while process.poll() is None:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Grains under the prescribed force of a model fluid: the same bits on any ranks and after a restart, motion that stops or
-goes on, refusals.
+"""Grains under the prescribed force of a model fluid: the same bits on any ranks and after a restart, motion that stops
+or goes on, refusals.
 
 Called by ctest: model_fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -37,7 +37,9 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.check_bits()
 
     def test_the_same_bits_with_gears_integrator_and_friction(self):
-        self.check_bits("--set", "run.grain_integrator=gear", "--set", "contact.friction=0.6", "--set", "run.time_step=6e-4")
+        self.check_bits(
+            "--set", "run.grain_integrator=gear", "--set", "contact.friction=0.6", "--set", "run.time_step=6e-4"
+        )
 
     def check_bits(self, *settings):
         self.run_well("run", self.case, *settings, "--out", "one")
@@ -49,8 +51,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
             self.assert_same_bed("one", other)
 
     def test_a_grain_that_leaves_its_block_knows_one_that_comes_nearer(self):
-        # They meet across the cut at x = 8 without a new list: a spacing of 2 + 0.276 at first, 1.84 at the end; a grain counts
-        # for another, whose solid fraction is that of 1.5 around it, from 2 on.
+        # They meet across the cut at x = 8 without a new list: a spacing of 2 + 0.276 at first, 1.84 at the end; a
+        # grain counts for another, whose solid fraction is that of 1.5 around it, from 2 on.
         grain = "{count: 1, diameter: 1, density: 1.909859317102744, "
         (self.folder / "two.yaml").write_text(self.CASE[:self.CASE.index("grains:")].replace("[6, 4, 16]", "[16, 4, 16]").replace(
             "shields_number: 0.5", "shields_number: 0.002").replace("lift_ratio: 1", "lift_ratio: 0") + f"""grains:
@@ -79,8 +81,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
             self.assert_same_bed("one", other)
 
     def test_a_bed_of_another_run_and_a_restart_soon_after(self):
-        # Nearly at rest, grains are within the tolerance of where their solid fractions were taken, but not there. The start
-        # takes them anew, and a checkpoint before the first new list of neighbours has them as they are.
+        # Nearly at rest, grains are within the tolerance of where their solid fractions were taken, but not there. The
+        # start takes them anew, and a checkpoint before the first new list of neighbours has them as they are.
         self.run_well("run", self.case, "--out", "source", "--set", "model_fluid.shields_number=0.03", "--until", "12")
         start = ("--set", "initial={from: source, fields: [grains]}")
         self.run_well("run", self.case, *start, "--out", "one", "--until", "1")
@@ -93,16 +95,22 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         reduced = gravity * (1.0 - fluid / density)
         mass = density * numpy.pi / 6.0 * diameter**3 * 0.5 * ((12 / 11)**3 + (10 / 11)**3)
         second, stiffness = numpy.sqrt(diameter / reduced), mass * reduced / diameter
-        in_si = self.CASE.replace("units: grain", f"units: si, fluid_density: {fluid}").replace(
-            "size: [6, 4, 16]", f"size: [{6 * diameter}, {4 * diameter}, {16 * diameter}]").replace(
-            "spacing: 1\n", f"spacing: {diameter}\n").replace(
-            "{magnitude: 1}", f"{{magnitude: {gravity}}}").replace(
-            "1.0909090909090908", repr(12 / 11 * diameter)).replace("0.9090909090909091", repr(10 / 11 * diameter)).replace(
-            "1.8636530433018714", repr(density)).replace(
-            "normal_stiffness: 5000, tangential_stiffness: 1667",
-            f"normal_stiffness: {5000 * stiffness!r}, tangential_stiffness: {1667 * stiffness!r}").replace(
-            "until: 4, time_step: 7.8e-4", f"until: {4 * second!r}, time_step: {7.8e-4 * second!r}").replace(
-            "every: 0.1}", f"every: {0.1 * second!r}}}").replace("every: 2,", f"every: {2 * second!r},")
+        in_si = (
+            self.CASE.replace("units: grain", f"units: si, fluid_density: {fluid}")
+            .replace("size: [6, 4, 16]", f"size: [{6 * diameter}, {4 * diameter}, {16 * diameter}]")
+            .replace("spacing: 1\n", f"spacing: {diameter}\n")
+            .replace("{magnitude: 1}", f"{{magnitude: {gravity}}}")
+            .replace("1.0909090909090908", repr(12 / 11 * diameter))
+            .replace("0.9090909090909091", repr(10 / 11 * diameter))
+            .replace("1.8636530433018714", repr(density))
+            .replace(
+                "normal_stiffness: 5000, tangential_stiffness: 1667",
+                f"normal_stiffness: {5000 * stiffness!r}, tangential_stiffness: {1667 * stiffness!r}",
+            )
+            .replace("until: 4, time_step: 7.8e-4", f"until: {4 * second!r}, time_step: {7.8e-4 * second!r}")
+            .replace("every: 0.1}", f"every: {0.1 * second!r}}}")
+            .replace("every: 2,", f"every: {2 * second!r},")
+        )
         (self.folder / "si.yaml").write_text(in_si)
         self.run_well("run", self.case, "--out", "grain")
         self.run_well("run", self.folder / "si.yaml", "--out", "si")
@@ -150,7 +158,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.assertGreaterEqual(numpy.diff(series["time"][rises]).min(), 2.0 - 0.11)
 
     def test_a_bed_of_which_most_grains_fly_is_not_watched_for_longer(self):
-        # With linear drag and elastic collisions a bed that has begun to move takes off (Clark et al. 2017, section III B).
+        # With linear drag and elastic collisions a bed that has begun to move takes off (Clark et al. 2017, section III
+        # B).
         self.run_well("run", self.case, *self.RAMP[:4], "--set", "model_fluid.drag=linear", "--set",
                       "model_fluid.reynolds_number=10", "--set", "contact.restitution=0.8", "--set",
                       "model_fluid.ramp={every: 2, hold: 1000, step: 0.2, largest_speed: 0.02, mobile_share: 0.5}",
@@ -175,8 +184,10 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.run_well("run", self.case, *self.RAMP, "--out", "run", "--until", "36")
         reached = self.summary("run")["figures"]["shields_number"]
         self.assertGreater(reached, 0.055)
-        self.run_well("run", self.case, *self.RAMP, "--set", "model_fluid.ramp.step=0.5", "--out", "run", "--restart", "run",
-                      "--until", "60")
+        self.run_well(
+            "run", self.case, *self.RAMP, "--set", "model_fluid.ramp.step=0.5", "--out", "run", "--restart", "run",
+            "--until", "60",
+        )
         figures = self.summary("run")["figures"]
         steps = numpy.log(figures["shields_number"] / reached) / numpy.log(1.5)
         self.assertGreater(steps, 0.9)
@@ -191,17 +202,17 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
 
     def test_refusals(self):
         for settings, words in (
-                (["grains.0.density=2550"], ["model_fluid.units", "mean mass", "are 1"]),
-                (["model_fluid={shields_number: 0.1, reynolds_number: 1}"], ["drag law is missing"]),
-                (["model_fluid.densest_fraction=0.3"], ["densest_fraction", "larger than top_fraction"]),
-                (["model_fluid.shear_reynolds_number=6"], ["Reynolds number is given twice"]),
-                (["model_fluid.ramp={every: 5}"], ["ramp.hold", "missing"]),
-                (["model_fluid.ramp={every: 5, hold: 9}", "run.until_at_rest={}"], ["until_at_rest", "model_fluid.ramp"]),
-                (["gravity.slope=0.1"], ["gravity", "downwards"]),
-                (["model_fluid.fluid_density=3"], ["float"]),
-                (["domain.boundaries.y=no_slip"], ["domain.boundaries", "x and y periodic"]),
-                (["walls=[{point: [1, 1, 1], normal: [1, 0, 0]}]"], ["walls", "remove the section"]),
-                (["system=grains"], ["model_fluid", "only system: model_fluid has it"])):
+            (["grains.0.density=2550"], ["model_fluid.units", "mean mass", "are 1"]),
+            (["model_fluid={shields_number: 0.1, reynolds_number: 1}"], ["drag law is missing"]),
+            (["model_fluid.densest_fraction=0.3"], ["densest_fraction", "larger than top_fraction"]),
+            (["model_fluid.shear_reynolds_number=6"], ["Reynolds number is given twice"]),
+            (["model_fluid.ramp={every: 5}"], ["ramp.hold", "missing"]),
+            (["model_fluid.ramp={every: 5, hold: 9}", "run.until_at_rest={}"], ["until_at_rest", "model_fluid.ramp"]),
+            (["gravity.slope=0.1"], ["gravity", "downwards"]), (["model_fluid.fluid_density=3"], ["float"]),
+            (["domain.boundaries.y=no_slip"], ["domain.boundaries", "x and y periodic"]),
+            (["walls=[{point: [1, 1, 1], normal: [1, 0, 0]}]"], ["walls", "remove the section"]),
+            (["system=grains"], ["model_fluid", "only system: model_fluid has it"]),
+        ):
             with self.subTest(settings=settings):
                 self.assert_refused("run", self.case, *[word for s in settings for word in ("--set", s)], words=words)
 

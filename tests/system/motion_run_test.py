@@ -80,7 +80,10 @@ analysis: {population_loads: {}, wall_forces: {}}
         self.assertGreater(height, 2.4e-3)
 
     def test_a_plate_bears_a_grain_and_another_falls_past_its_edge(self):
-        plate = "walls=[{point: [0.03, 0.015, 0.02], normal: [0, 0, 1], plate: {along: [0, 1, 0], length: 0.012, width: 0.008}}]"
+        plate = (
+            "walls=[{point: [0.03, 0.015, 0.02], normal: [0, 0, 1], plate: {along: [0, 1, 0], length: 0.012, width:"
+            " 0.008}}]"
+        )
         # Past the edge by more than a radius, on the side where the plate reaches 4 mm.
         places = "grains.1.placement.positions=[[0.03, 0.015, 0.0226], [0.0231, 0.015, 0.0226]]"
         still = "domain.boundaries.bottom=no_slip"
@@ -103,11 +106,17 @@ analysis: {population_loads: {}, wall_forces: {}}
         self.assertAlmostEqual(position[0, 2], 0.03 - 4.9 * time ** 2, delta=1e-12)
 
     def test_what_cannot_be_is_refused(self):
-        self.assert_refused("check", self.case, "--set", "walls.0.normal=[0, 0, 0]", words=["walls.0.normal", "[0, 0, 1]"])
-        self.assert_refused("check", self.case, "--set", "walls.0.plate={length: 0.01}", words=["walls.0.plate", "width"])
+        self.assert_refused(
+            "check", self.case, "--set", "walls.0.normal=[0, 0, 0]", words=["walls.0.normal", "[0, 0, 1]"]
+        )
+        self.assert_refused(
+            "check", self.case, "--set", "walls.0.plate={length: 0.01}", words=["walls.0.plate", "width"]
+        )
         self.assert_refused("check", self.case, "--set", "walls.0.plate={length: 0.01, width: 0.01}",
                             words=["walls.0.plate.along", "right angles to normal"])
-        self.assert_refused("check", self.case, "--set", "grains.0.fixed=true", words=["grains.0.motion", "remove fixed"])
+        self.assert_refused(
+            "check", self.case, "--set", "grains.0.fixed=true", words=["grains.0.motion", "remove fixed"]
+        )
         self.assert_refused("check", self.case, "--set", "grains.0.motion.oscillation={amplitude: [0, 0, 1]}",
                             words=["frequency"])
         self.assert_refused("run", self.case, "--set", "grains.0.motion.velocity=[0, 0, 40]",

@@ -51,14 +51,18 @@ analysis: {{bed_surface: {{every: 0.05}}}}
         self.assertEqual(self.series()["bed_height"][-1], found["bed_height"])
 
     def test_has_the_same_bits_on_any_ranks_and_after_a_restart(self):
-        early = ("--set", "run.until=0.02", "--set", "output.series.every=0.005", "--set", "analysis.bed_surface.every=0.005", "--set",
-                 "output.checkpoint.every=0.01")
+        early = (
+            "--set", "run.until=0.02", "--set", "output.series.every=0.005", "--set",
+            "analysis.bed_surface.every=0.005", "--set", "output.checkpoint.every=0.01",
+        )
         self.run_well("run", self.case, "--out", "one", *early)
         self.run_well("run", self.case, "--out", "three", *early, ranks=3)
         self.run_well("run", self.case, "--out", "again", *early, "--until", "0.011", ranks=2)
         self.run_well("run", self.case, "--out", "again", "--restart", "again", *early)
         for out in ("three", "again"):
-            self.assertEqual((self.folder / out / "series.csv").read_bytes(), (self.folder / "one/series.csv").read_bytes(), out)
+            self.assertEqual(
+                (self.folder / out / "series.csv").read_bytes(), (self.folder / "one/series.csv").read_bytes(), out
+            )
             self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
 
 

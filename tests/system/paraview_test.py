@@ -1,5 +1,5 @@
-"""scripts/paraview_view.py makes a picture and a state that ParaView opens again. Left out where there is no pvpython, which
-Debian does not install beside VTK's Python (unpack its packages paraview and python3-paraview elsewhere)."""
+"""scripts/paraview_view.py makes a picture and a state that ParaView opens again. Left out where there is no pvpython,
+which Debian does not install beside VTK's Python (unpack its packages paraview and python3-paraview elsewhere)."""
 import os
 import pathlib
 import shutil
@@ -28,7 +28,10 @@ os._exit(0)
 @unittest.skipUnless(PVPYTHON and shutil.which("xvfb-run"), "needs pvpython and xvfb-run")
 class ParaviewView(unittest.TestCase):
     def pvpython(self, *arguments):
-        return subprocess.run(["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24", PVPYTHON, *map(str, arguments)], text=True, capture_output=True, timeout=120)
+        return subprocess.run(
+            ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24", PVPYTHON, *map(str, arguments)], text=True,
+            capture_output=True, timeout=120,
+        )
 
     def assert_drawn(self, path):
         """More than thirty colours: spheres with their shading, and scales."""

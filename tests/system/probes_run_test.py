@@ -68,17 +68,21 @@ analysis:
             covered = frame.arrays["grain_id"][z, y, x] >= 0
             numpy.testing.assert_array_equal(numpy.isnan(probes["pressure"][row]), covered)
             # Pictures have single precision.
-            numpy.testing.assert_allclose(probes["velocity"][row][~covered], frame.arrays["velocity"][z, y, x][~covered],
-                                          rtol=1e-6, atol=1e-9)
-            numpy.testing.assert_allclose(probes["pressure"][row][~covered], frame.arrays["pressure"][z, y, x][~covered],
-                                          rtol=1e-6, atol=1e-9)
+            numpy.testing.assert_allclose(
+                probes["velocity"][row][~covered], frame.arrays["velocity"][z, y, x][~covered], rtol=1e-6, atol=1e-9
+            )
+            numpy.testing.assert_allclose(
+                probes["pressure"][row][~covered], frame.arrays["pressure"][z, y, x][~covered], rtol=1e-6, atol=1e-9
+            )
         covered = numpy.isnan(probes["pressure"])
         self.assertTrue(covered[:, 2].any() and not covered[:, :2].any())
 
     def test_a_restart_has_no_row_twice_and_the_run_does_not_notice(self):
         self.run_well("run", self.case, "--out", "straight")
         self.run_well("run", self.case, "--out", "parts", "--until", "0.015")   # beyond the checkpoint at 10 ms
-        self.run_well("run", self.case, "--out", "parts", "--restart", self.folder / "parts/checkpoints/step_100.h5", ranks=2)
+        self.run_well(
+            "run", self.case, "--out", "parts", "--restart", self.folder / "parts/checkpoints/step_100.h5", ranks=2
+        )
         for name, values in self.probes("straight").items():
             self.assertEqual(values.tobytes(), self.probes("parts")[name].tobytes(), name)
         self.run_well("run", self.case, "--out", "alone", "--set", "analysis={}")
@@ -87,7 +91,9 @@ analysis:
     def test_other_probes_are_refused_and_nothing_is_touched(self):
         self.run_well("run", self.case, "--until", "0.01")
         fewer = ("--set", "analysis.probes.lines.0.points=6")
-        self.assert_refused("run", self.case, "--restart", "run", *fewer, words=["run/probes/part_", "cannot be continued", "--out"])
+        self.assert_refused(
+            "run", self.case, "--restart", "run", *fewer, words=["run/probes/part_", "cannot be continued", "--out"]
+        )
         self.run_well("run", self.case, "--restart", "run")
 
     def test_what_is_not_in_the_box_is_refused(self):

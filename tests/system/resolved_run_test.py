@@ -17,8 +17,8 @@ from program import ProgramTest
 
 
 class ResolvedRun(ProgramTest):
-    # A short narrow flume in which everything moves: grains fall, meet each other, the floor and the side walls, and cross
-    # the borders between ranks and the periodic faces.
+    # A short narrow flume in which everything moves: grains fall, meet each other, the floor and the side walls, and
+    # cross the borders between ranks and the periodic faces.
     CASE = """
 system: resolved
 name: short flume
@@ -83,7 +83,9 @@ analysis:
                       *measured, ranks=2)
         for out in ("two", "again"):
             for path in ("profiles.h5", self.last_checkpoint(out).relative_to(self.folder / out)):
-                self.assertEqual((self.folder / out / path).read_bytes(), (self.folder / "one" / path).read_bytes(), out)
+                self.assertEqual(
+                    (self.folder / out / path).read_bytes(), (self.folder / "one" / path).read_bytes(), out
+                )
         self.assertEqual(self.summary("again")["stress_balance"], self.summary("one")["stress_balance"])
         self.assertIn("of the total stress from the driving stress", (self.folder / "one/run.log").read_text())
         self.run_well("run", self.case, "--out", "unseen", "--until", "0.01")
@@ -117,8 +119,10 @@ analysis:
         self.assertEqual(self.last_checkpoint("one").read_bytes(), self.last_checkpoint("two").read_bytes())
 
     def test_options_of_the_coupling_have_the_same_bits_after_a_restart(self):
-        options = ["--set", "coupling.lubrication={}", "--set", "coupling.links=cli", "--set", "grains.0.density=1200",
-                   "--set", "fluid.kinematic_viscosity=1e-5", "--set", "output.checkpoint.every=0.01", "--until", "0.02"]
+        options = [
+            "--set", "coupling.lubrication={}", "--set", "coupling.links=cli", "--set", "grains.0.density=1200",
+            "--set", "fluid.kinematic_viscosity=1e-5", "--set", "output.checkpoint.every=0.01", "--until", "0.02",
+        ]
         self.run_well("run", self.case, "--out", "straight", *options)
         half_way = self.folder / "straight/checkpoints/step_100.h5"
         self.run_well("run", self.case, "--out", "again", "--restart", half_way, *options, ranks=2)
@@ -147,8 +151,8 @@ analysis:
         with h5py.File(self.last_checkpoint("run")) as checkpoint:
             numpy.testing.assert_allclose(points, checkpoint["grains/position"][()], atol=1e-8)
 
-        # The map is that of the step before and lags behind a grain by the way of one step and the link tolerance: below a
-        # tenth of a cell at these speeds. All other cells are solid exactly where a centre is inside a grain.
+        # The map is that of the step before and lags behind a grain by the way of one step and the link tolerance:
+        # below a tenth of a cell at these speeds. All other cells are solid exactly where a centre is inside a grain.
         spacing, length = 0.825e-3, 0.0396
         reader = vtkXMLImageDataReader()
         reader.SetFileName(str(run / "fluid/fluid_000000600.vti"))

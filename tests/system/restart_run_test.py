@@ -40,13 +40,17 @@ output: {series: {every: 0.01}}
         self.assertNotIn("changed since then", said)
 
     def test_what_has_changed_is_told_and_kept(self):
-        said = self.run_well("run", self.case, "--restart", "run", "--until", "0.1", "--set", "contact.friction=0.4").stdout
+        said = self.run_well(
+            "run", self.case, "--restart", "run", "--until", "0.1", "--set", "contact.friction=0.4"
+        ).stdout
         self.assertIn("changed since then: run.until: 0.05 -> 0.1", said)
         self.assertIn("changed since then: contact.friction: 0.3 -> 0.4", said)
         log = (self.folder / "run/run.log").read_text()
         self.assertIn("contact.friction: 0.3 -> 0.4", log)
         # A checkpoint is told from the case that made it, not from the folder's present one.
-        said = self.run_well("run", self.case, "--restart", "run/checkpoints/step_100.h5", "--out", "other", "--until", "0.06")
+        said = self.run_well(
+            "run", self.case, "--restart", "run/checkpoints/step_100.h5", "--out", "other", "--until", "0.06"
+        )
         self.assertNotIn("contact.friction", said.stdout)
         # A setting that is not repeated is told as well.
         said = self.run_well("run", self.case, "--restart", "run", "--until", "0.15").stdout
@@ -64,8 +68,11 @@ output: {series: {every: 0.01}}
                                 words=[key, "in its checkpoint", "initial.from"])
 
     def test_grains_are_not_placed_again(self):
-        # Forty grains would fill 58 % of this, more than a random packing can: a new run is refused, and one that goes on does not look for it.
-        tight = ("--set", "grains.0.placement.region={lower: [0, 0, 0], upper: [0.0165, 0.0165, 0.0165]}", "--until", "0.1")
+        # Forty grains would fill 58 % of this, more than a random packing can: a new run is refused, and one that goes
+        # on does not look for it.
+        tight = (
+            "--set", "grains.0.placement.region={lower: [0, 0, 0], upper: [0.0165, 0.0165, 0.0165]}", "--until", "0.1",
+        )
         self.assert_refused("run", self.case, "--out", "new", *tight, words=["grains.0", "region"])
         self.run_well("run", self.case, "--out", "straight", "--until", "0.1")
         self.run_well("run", self.case, "--restart", "run", *tight, ranks=2)
@@ -73,8 +80,10 @@ output: {series: {every: 0.01}}
 
     def test_in_another_folder_too(self):
         checkpoint = self.last_checkpoint("run")
-        self.assert_refused("run", self.case, "--restart", checkpoint, "--out", "other", "--set", "grains.0.density=2650",
-                            words=["grains.0.density = 2650", "2550"])
+        self.assert_refused(
+            "run", self.case, "--restart", checkpoint, "--out", "other", "--set", "grains.0.density=2650",
+            words=["grains.0.density = 2650", "2550"],
+        )
         said = self.run_well("run", self.case, "--restart", checkpoint, "--out", "other", "--until", "0.1").stdout
         self.assertIn("changed since then: run.until: 0.05 -> 0.1", said)
 
@@ -122,7 +131,9 @@ output: {series: {every: 0.01}}
 
     def test_a_table_that_cannot_be_continued_is_refused_and_nothing_is_touched(self):
         kept = contents_below(self.folder)
-        refused = self.thalweg("run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}")
+        refused = self.thalweg(
+            "run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}"
+        )
         self.assertEqual(refused.returncode, 2)
         self.assertIn("series.csv: the file has other columns than this run writes", refused.stderr)
         self.assertEqual(contents_below(self.folder), kept)
@@ -130,8 +141,12 @@ output: {series: {every: 0.01}}
     def test_a_checkpoint_that_has_left_its_folder_is_compared_too(self):
         shutil.copy(self.last_checkpoint("run"), self.folder / "copy.h5")
         on = ("run", self.case, "--restart", "copy.h5", "--out", "on", "--until", "0.06")
-        for key, value in (("grains.0.density", "2650"), ("domain.boundaries.bottom", "{type: moving, velocity: [0.1, 0, 0]}")):
-            self.assert_refused(*on, "--set", f"{key}={value}", words=["copy.h5: ", key, "set the key back", "initial.from"])
+        for key, value in (
+            ("grains.0.density", "2650"), ("domain.boundaries.bottom", "{type: moving, velocity: [0.1, 0, 0]}"),
+        ):
+            self.assert_refused(
+                *on, "--set", f"{key}={value}", words=["copy.h5: ", key, "set the key back", "initial.from"]
+            )
         self.run_well(*on)
 
 
@@ -191,12 +206,17 @@ output: {series: {every: 0.001}}
 
     def test_cells_of_the_same_size_go_on(self):
         for number, spacing in enumerate(("0.8e-3", "0.00080000000000001")):   # but for rounding
-            self.run_well("run", self.case, "--restart", "copy.h5", "--set", f"domain.spacing={spacing}", "--until", "0.002",
-                          "--out", f"on_{number}")
+            self.run_well(
+                "run", self.case, "--restart", "copy.h5", "--set", f"domain.spacing={spacing}", "--until", "0.002",
+                "--out", f"on_{number}",
+            )
 
     def test_another_number_of_cells_is_refused(self):
-        self.assert_refused("run", self.case, "--restart", "copy.h5", "--out", "longer", "--set", "domain.size=[0.0256, 0.0128, 0.0192]",
-                            "--until", "0.002", words=["copy.h5: ", "domain.size = [0.0256", "set the key back"])
+        self.assert_refused(
+            "run", self.case, "--restart", "copy.h5", "--out", "longer", "--set",
+            "domain.size=[0.0256, 0.0128, 0.0192]", "--until", "0.002",
+            words=["copy.h5: ", "domain.size = [0.0256", "set the key back"],
+        )
 
     def test_as_a_start_of_a_new_run_its_cells_may_differ(self):
         finer = ("--set", "domain.spacing=0.4e-3", "--set", "fluid.time_step=0.5e-4")
@@ -251,7 +271,9 @@ analysis: {transport_rate: {}, bed_surface: {}}
         said = self.run_well("run", self.case, "--restart", "run", ranks=2).stdout
         self.assertNotIn("changed since then: grains", said)
         self.assert_same_bed("run", "straight")
-        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+        self.assertEqual(
+            (self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text()
+        )
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
         # Also where the newest checkpoint is damaged, from the one before.
         newest = self.last_checkpoint("run")
@@ -262,7 +284,8 @@ analysis: {transport_rate: {}, bed_surface: {}}
 
 
 class RestartOfDisksFromAFile(ProgramTest):
-    """Disks that a region takes out of a file are moved into the middle of a wider box, where the region's y does not reach."""
+    """Disks that a region takes out of a file are moved into the middle of a wider box, where the region's y does not
+    reach."""
     CASE = """
 system: grains
 name: disks
@@ -307,7 +330,9 @@ output: {series: {every: 0.001}}
         self.run_well("run", self.case, "--until", "0.005", ranks=2)
         self.run_well("run", self.case, "--restart", "run")
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("straight").read_bytes())
-        self.assertEqual((self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text())
+        self.assertEqual(
+            (self.folder / "run/series.csv").read_text(), (self.folder / "straight/series.csv").read_text()
+        )
 
     def kept_stiffness(self, folder):
         return yaml.safe_load((self.folder / folder / "case.yaml").read_text())["contact"]["normal_stiffness"]
@@ -318,12 +343,16 @@ output: {series: {every: 0.001}}
         said = self.run_well("run", self.case, "--restart", "run", "--until", "0.006").stdout
         self.assertNotIn("changed since then: contact", said)
         self.assertEqual(self.kept_stiffness("run"), first)
-        said = self.run_well("run", self.case, "--restart", "run", "--until", "0.007", "--set", "contact.duration=1.0e-3").stdout
+        said = self.run_well(
+            "run", self.case, "--restart", "run", "--until", "0.007", "--set", "contact.duration=1.0e-3"
+        ).stdout
         self.assertIn(f"changed since then: contact.normal_stiffness: {first!r} -> ", said)
         # New runs from that state: with half the step contacts are half as long.
         for folder, step in (("fine", 5.0e-5), ("finer", 2.5e-5)):
-            self.run_well("run", self.case, "--out", folder, "--until", f"{5.0 * step!r}", "--set", f"fluid.time_step={step!r}",
-                          "--set", "initial={from: run, fields: [grains]}")
+            self.run_well(
+                "run", self.case, "--out", folder, "--until", f"{5.0 * step!r}", "--set", f"fluid.time_step={step!r}",
+                "--set", "initial={from: run, fields: [grains]}",
+            )
         self.assertAlmostEqual(self.kept_stiffness("finer") / self.kept_stiffness("fine"), 4.0, 9)
 
     def test_the_lubrication_of_the_grains_of_the_checkpoint_is_looked_at(self):

@@ -47,7 +47,8 @@ class Words(unittest.TestCase):
                     self.assertFalse(self.trace.exists())
 
 
-# As APT 3 does with the file it reports its progress to: whoever writes there is told that there is no room, instead of waiting.
+# As APT 3 does with the file it reports its progress to: whoever writes there is told that there is no room, instead of
+# waiting.
 APT = """#!/usr/bin/env python3
 import os, re, sys
 os.set_blocking(int(re.search("APT::Status-Fd=([0-9]+)", " ".join(sys.argv))[1]), False)
@@ -60,11 +61,17 @@ while text:
 class Setup(unittest.TestCase):
     def test_messages_of_packages_wait_until_there_is_room(self):
         with tempfile.TemporaryDirectory() as name:
-            for program, text in {"apt-get": APT, "dpkg-query": "#!/bin/sh\nexit 1\n", "sudo": '#!/bin/sh\nshift\nexec "$@"\n'}.items():
+            for program, text in {
+                "apt-get": APT,
+                "dpkg-query": "#!/bin/sh\nexit 1\n",
+                "sudo": '#!/bin/sh\nshift\nexec "$@"\n',
+            }.items():
                 (pathlib.Path(name) / program).write_text(text)
                 (pathlib.Path(name) / program).chmod(0o755)
-            result = subprocess.run([ROOT / "scripts/setup"], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120,
-                                    env=os.environ | {"PATH": f"{name}:{os.environ['PATH']}"})
+            result = subprocess.run(
+                [ROOT / "scripts/setup"], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120,
+                env=os.environ | {"PATH": f"{name}:{os.environ['PATH']}"},
+            )
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn("== Installing packages", result.stdout)
 
@@ -76,8 +83,11 @@ class Stages(unittest.TestCase):
         self.log = pathlib.Path(folder.name) / "logs" / "work.log"
 
     def command_of(self, work):
-        return ["bash", "-c", f'set -euo pipefail; source "{ROOT}/scripts/stages"; stage "Working" "{self.log}" bash -c "$1"; echo next',
-                "a_script", work]
+        return [
+            "bash", "-c",
+            f'set -euo pipefail; source "{ROOT}/scripts/stages"; stage "Working" "{self.log}" bash -c "$1"; echo next',
+            "a_script", work,
+        ]
 
     def result_of(self, work):
         return subprocess.run(self.command_of(work), capture_output=True, text=True, timeout=60)

@@ -29,7 +29,9 @@ class InWater(ProgramTest):
     def series_of_the_same_bits_anywhere(self):
         self.run_well("run", self.case, "--out", "one")
         self.run_well("run", self.case, "--out", "two", ranks=2)
-        self.run_well("run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2)
+        self.run_well(
+            "run", self.case, "--out", "again", "--restart", self.folder / "one/checkpoints/step_600.h5", ranks=2
+        )
         for out in ("two", "again"):
             self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
         return Run(self.folder / "one").series
@@ -67,7 +69,9 @@ solids:
         # For ParaView once, because they stand still: the sill, and a sphere of triangles.
         (surfaces,) = Run(self.folder / "one").solids
         sill, ball = (surfaces.points[numpy.unique(surfaces.triangles[surfaces.solid == n])] for n in (0, 1))
-        numpy.testing.assert_allclose([sill.min(axis=0), sill.max(axis=0)], [[0.012, -0.001, -0.001], [0.017, 0.016, 0.006]])
+        numpy.testing.assert_allclose(
+            [sill.min(axis=0), sill.max(axis=0)], [[0.012, -0.001, -0.001], [0.017, 0.016, 0.006]]
+        )
         numpy.testing.assert_allclose(numpy.linalg.norm(ball - [0.0005, 0.0075, 0.0035], axis=1), 3.5e-3)
 
     def test_what_cannot_be_is_refused(self):
@@ -76,12 +80,15 @@ solids:
         self.assert_refused("check", self.case, "--set",
                             "solids.1.motion={rotation: {point: [0, 0.0075, 0.02], angular_velocity: 1}}",
                             words=["solids.1.motion.rotation", "would meet its own image along x"])
-        self.assert_refused("check", self.case, "--set", "grains.0.count=1", "--set",
-                            "grains.0.placement={positions: [[0.014, 0.007, 0.003]]}", words=["Grain 0", "is inside solid 0"])
+        self.assert_refused(
+            "check", self.case, "--set", "grains.0.count=1", "--set",
+            "grains.0.placement={positions: [[0.014, 0.007, 0.003]]}", words=["Grain 0", "is inside solid 0"],
+        )
 
 
 class SolidsThatMoveInWater(InWater):
-    # A plate ploughs along the channel and across its periodic end, a wheel turns in the water; grains lie before the plate.
+    # A plate ploughs along the channel and across its periodic end, a wheel turns in the water; grains lie before the
+    # plate.
     CASE = f"""
 system: resolved
 name: plough

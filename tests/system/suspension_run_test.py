@@ -41,9 +41,13 @@ output: {series: {every: 0.01}, grains: {every: 0.01}, fluid: {every: 0.01, fiel
         count, volume = run.summary["grains"], numpy.pi / 6.0 * 2e-3**3
         self.assertEqual(count, round(0.2 * 0.008**3 / volume))
         time = run.series["time"][-1]
-        fluid = 1000.0 * run.fluid.nearest(time).arrays["velocity"].reshape(-1, 3).sum(axis=0) * 2.5e-4**3   # zero in grains
+        fluid = (
+            1000.0 * run.fluid.nearest(time).arrays["velocity"].reshape(-1, 3).sum(axis=0) * 2.5e-4**3
+        )  # zero in grains
         grains = 1500.0 * volume * run.grains.nearest(time).velocity.sum(axis=0)
-        of_series = numpy.array([[run.series[f"{phase}_momentum_{axis}"][-1] for axis in "xyz"] for phase in ("fluid", "grain")])
+        of_series = numpy.array(
+            [[run.series[f"{phase}_momentum_{axis}"][-1] for axis in "xyz"] for phase in ("fluid", "grain")]
+        )
         # The frame has velocities in single precision.
         self.assertLess(numpy.linalg.norm(of_series - [fluid, grains]), 1e-4 * numpy.linalg.norm(grains))
         # They settle along gravity, far slower than they would fall.
@@ -51,8 +55,8 @@ output: {series: {every: 0.01}, grains: {every: 0.01}, fluid: {every: 0.01, fiel
         self.assertGreater(-grains[2], 0.0)
         self.assertLess(abs(grains[0] / grains[2] + 1.0 / 3.0), 0.1)
         self.assertLess(numpy.linalg.norm(grains), 0.1 * numpy.linalg.norm(weight) * time)
-        # The fluid has what they have, the other way. The force on the fluid acts on whole cells, whose number differs from
-        # the fluid's volume by a per cent of the grains' or so, for a fifth of the weight.
+        # The fluid has what they have, the other way. The force on the fluid acts on whole cells, whose number differs
+        # from the fluid's volume by a per cent of the grains' or so, for a fifth of the weight.
         self.assertLess(numpy.linalg.norm(fluid + grains), 0.01 * 0.2 * numpy.linalg.norm(weight) * time)
 
     def test_what_drives_a_suspension_between_plates_adds_up_to_nothing(self):
@@ -60,8 +64,8 @@ output: {series: {every: 0.01}, grains: {every: 0.01}, fluid: {every: 0.01, fiel
             "domain.boundaries.bottom=no_slip", "domain.boundaries.top=no_slip", "gravity.vector=[9, 0, 0]",
             "analysis.stress_balance={from: 0.005}") for word in ("--set", setting)])
         driving = Run(self.folder / "run").profiles["stress_balance"]["driving_stress"]
-        # Between the middles of the lowest and the highest layer the weight of the grains, per area, and the force of the pressure
-        # gradient cancel but for what is beyond these: of either a sixteenth.
+        # Between the middles of the lowest and the highest layer the weight of the grains, per area, and the force of
+        # the pressure gradient cancel but for what is beyond these: of either a sixteenth.
         weight = 500.0 * 9.0 * 0.2 * 0.008
         self.assertLess(abs(driving[0] - driving[-1]), weight / 10)
         self.assertGreater(numpy.ptp(driving), weight / 50)

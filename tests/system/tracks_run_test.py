@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tracks of single grains in a whole run: the same files on any ranks, no row twice after a restart, and a run that does not
-notice them.
+"""Tracks of single grains in a whole run: the same files on any ranks, no row twice after a restart, and a run that
+does not notice them.
 
 Called by ctest: tracks_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -47,7 +47,11 @@ analysis:
 
     def files_of(self, run):
         """Bytes of the parts of the tracks and of the series, by name."""
-        return {path.name: path.read_bytes() for pattern in ("tracks/*", "series.csv") for path in (self.folder / run).glob(pattern)}
+        return {
+            path.name: path.read_bytes()
+            for pattern in ("tracks/*", "series.csv")
+            for path in (self.folder / run).glob(pattern)
+        }
 
     def assert_same_tracks(self, a, b):
         for name, values in self.tracks(a).items():
@@ -93,7 +97,10 @@ analysis:
     def test_a_restart_needs_no_part_after_its_checkpoint(self):
         """As a kill or a loss of power leaves them: gone, empty, unfinished."""
         self.run_well("run", self.case, "--out", "straight", "--set", "output.checkpoint.every=0.01")
-        self.assertEqual(sorted(self.files_of("straight")), [f"part_{step:09d}.h5" for step in (0, 100, 200, 300, 400)] + ["series.csv"])
+        self.assertEqual(
+            sorted(self.files_of("straight")),
+            [f"part_{step:09d}.h5" for step in (0, 100, 200, 300, 400)] + ["series.csv"],
+        )
         shutil.copytree(self.folder / "straight", self.folder / "run")
         parts = self.folder / "run/tracks"
         (parts / "part_000000300.h5").write_bytes(b"")
@@ -103,10 +110,13 @@ analysis:
         self.assertEqual(self.files_of("run"), self.files_of("straight"))
 
     def test_records_that_are_no_longer_wanted_do_not_outlive_their_course(self):
-        """A restart that goes back without the tracks, and one that takes them up again: none of the course that was left."""
+        """A restart that goes back without the tracks, and one that takes them up again: none of the course that was
+        left."""
         self.run_well("run", self.case, "--out", "run", "--until", "0.03")
-        self.run_well("run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--out", "run", "--set", "analysis={}",
-                      "--set", "output.grains.every=0", "--until", "0.022")
+        self.run_well(
+            "run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--out", "run", "--set",
+            "analysis={}", "--set", "output.grains.every=0", "--until", "0.022",
+        )
         self.assertLessEqual(self.tracks("run")["time"].max(), 0.02)
         self.assertEqual(list(thalweg.Run(self.folder / "run").grains.times), [0.0, 0.01, 0.02])
         self.assertEqual(len(list((self.folder / "run/grains").iterdir())), 3)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks tell a
-run that is as it should be from one that is not there.
+"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks
+tell a run that is as it should be from one that is not there.
 
 Called by ctest: tutorials_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -27,8 +27,10 @@ class Tutorials(ProgramTest):
         self.run_well("run", f"{TUTORIALS}/1_settled_bed/case.yaml", "--out", "run/small_bed")
 
     def check_script(self, tutorial, *folders):
-        return subprocess.run([sys.executable, "-B", ROOT / TUTORIALS / tutorial / "check.py", *folders], cwd=self.folder,
-                              capture_output=True, text=True)
+        return subprocess.run(
+            [sys.executable, "-B", ROOT / TUTORIALS / tutorial / "check.py", *folders], cwd=self.folder,
+            capture_output=True, text=True,
+        )
 
     def test_the_beds_are_as_expected(self):
         done = self.check_script("1_settled_bed")
@@ -51,7 +53,11 @@ class Tutorials(ProgramTest):
             self.assertTrue(self.summary(f"run/{name}")["finished"])
 
     def test_every_sweep_can_be_listed(self):
-        sweeps = [path for path in sorted((self.folder / TUTORIALS).glob("*/*.yaml")) if path.name not in ("case.yaml", "pour.yaml")]
+        sweeps = [
+            path
+            for path in sorted((self.folder / TUTORIALS).glob("*/*.yaml"))
+            if path.name not in ("case.yaml", "pour.yaml")
+        ]
         self.assertEqual(len(sweeps), 3)
         for sweep in sweeps:
             listed = self.run_well("sweep", sweep, "--out", "run/sweep", "--dry-run").stdout

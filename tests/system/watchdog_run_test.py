@@ -33,8 +33,10 @@ output: {series: {every: 0}, checkpoint: {every: 0.02, keep: 3}}
             result = self.thalweg("run", self.case, "--out", run, ranks=ranks)
             self.assertEqual(result.returncode, 1, result.stderr + result.stdout)
             message = [line for line in result.stderr.splitlines() if line.startswith("thalweg: ")][0]
-            for word in ("0.06 s (step 1200)", "is 0.312, beyond the limit of 0.3", "in the cell at (0.00025, 0.00025, 0.00025) m",
-                         "shorten fluid.time_step", "step_800.h5"):
+            for word in (
+                "0.06 s (step 1200)", "is 0.312, beyond the limit of 0.3",
+                "in the cell at (0.00025, 0.00025, 0.00025) m", "shorten fluid.time_step", "step_800.h5",
+            ):
                 self.assertIn(word, message)
             self.assertEqual((run / "checkpoints/latest").read_text().strip(), "step_800.h5")
             self.assertTrue((run / "checkpoints/step_400.h5").is_file())
@@ -57,7 +59,9 @@ output: {series: {every: 0}, checkpoint: {every: 0.02, keep: 3}}
         self.run_well("run", self.case, "--set", "run.watchdog=warn", "--until", "0.065")
         # 0.208, then half as much again: 0.312 at step 1200. And the fraction, once.
         self.assertEqual(self.summary("run")["warnings"], 3)
-        self.assert_refused("run", self.case, "--set", "run.watchdog=bite", words=["run.watchdog", "bite", "stop", "warn"])
+        self.assert_refused(
+            "run", self.case, "--set", "run.watchdog=bite", words=["run.watchdog", "bite", "stop", "warn"]
+        )
 
     def test_without_a_checkpoint_it_says_so(self):
         result = self.thalweg("run", self.case, "--set", "output.checkpoint.every=0")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Restitution of spheres that rebound in a liquid: compare.py RUN_FOLDER... [--figure FILE]
 
-Up to three impacts of a run above the Stokes number 8 count. The impact velocity is the largest since the last impact; the
-rebound velocity is that at the time when sound has gone around the sphere after the end of the contact (pi R/c_s, 27 steps at
-ten cells per diameter), before which the fluid has not responded to the reversal. Prints Stokes number, restitution over dry
-restitution, exp(-35/St), their difference, and pass or fail (0.1). Exit code 0 if all pass.
+Up to three impacts of a run above the Stokes number 8 count. The impact velocity is the largest since the last impact;
+the rebound velocity is that at the time when sound has gone around the sphere after the end of the contact (pi R/c_s,
+27 steps at ten cells per diameter), before which the fluid has not responded to the reversal. Prints Stokes number,
+restitution over dry restitution, exp(-35/St), their difference, and pass or fail (0.1). Exit code 0 if all pass.
 """
 import argparse
 import math

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Prints the options of `thalweg run case.yaml` for an impact at a Stokes number: restitution.py ST [CELLS_A_DIAMETER [STEPS]]
+"""Prints the options of `thalweg run case.yaml` for an impact at a Stokes number: restitution.py ST [CELLS_A_DIAMETER
+[STEPS]]
 
-The sphere falls at its terminal velocity V by Schiller and Naumann's drag; the viscosity is the one for which
-St = rho_s V d/(9 eta). In one fluid step the sphere falls 0.04 cells. A contact lasts STEPS fluid steps, about as long as
+The sphere falls at its terminal velocity V by Schiller and Naumann's drag; the viscosity is the one for which St =
+rho_s V d/(9 eta). In one fluid step the sphere falls 0.04 cells. A contact lasts STEPS fluid steps, about as long as
 sound takes to cross the sphere on the lattice: in a shorter one the fluid around the sphere cannot reverse with it.
 """
 import math
@@ -34,10 +35,12 @@ def main():
     velocity, spacing = terminal(viscosity), DIAMETER / cells
     step = 0.04 * spacing / velocity
     stiffness = SOLID * math.pi / 6.0 * DIAMETER ** 3 * (math.pi / (steps * step)) ** 2
-    print(f"--set domain.spacing={spacing:.8g} --set fluid.kinematic_viscosity={viscosity:.6g} "
-          f"--set fluid.time_step={step:.6g} --set contact.normal_stiffness={stiffness:.6g} "
-          f"--set contact.tangential_stiffness={2.0 / 7.0 * stiffness:.6g} --set grains.0.velocity=[0,0,{-velocity:.5g}] "
-          f"--set output.grains.every={0.2 * spacing / velocity:.5g} --until {4.0 * DIAMETER / velocity:.5g}")
+    print(
+        f"--set domain.spacing={spacing:.8g} --set fluid.kinematic_viscosity={viscosity:.6g} "
+        f"--set fluid.time_step={step:.6g} --set contact.normal_stiffness={stiffness:.6g} "
+        f"--set contact.tangential_stiffness={2.0 / 7.0 * stiffness:.6g} --set grains.0.velocity=[0,0,{-velocity:.5g}] "
+        f"--set output.grains.every={0.2 * spacing / velocity:.5g} --until {4.0 * DIAMETER / velocity:.5g}"
+    )
 
 
 main()

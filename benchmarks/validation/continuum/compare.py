@@ -96,7 +96,10 @@ def main(points_folder, grids_folder, *resolved_folders):
         draw_profiles(right, thalweg.Run(folder).profiles["continuum"], style, speed)
     for folder in resolved_folders:
         draw_profiles(right, thalweg.Run(folder).profiles["stress_balance"], "--", Path(folder).name)
-    right.set(ylim=(-2.5, 5.0), xlim=(0.0, 1.0), ylabel="height over the surface, d", title="slope 0.010, Shields number 0.085")
+    right.set(
+        ylim=(-2.5, 5.0), xlim=(0.0, 1.0), ylabel="height over the surface, d",
+        title="slope 0.010, Shields number 0.085",
+    )
     right.legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(HERE / "continuum.png", dpi=110)
@@ -113,7 +116,9 @@ def main(points_folder, grids_folder, *resolved_folders):
               row["figures.q_star"], row["state"])
     steady = all(row["state"] == "done" and float(row["figures.unsteadiness"]) < STEADY for row in points)
     worst = np.max(np.abs(rows[:, 5]))
-    print(f"steady: {steady}; largest deviation of streamwise {worst:.2g} %, of total {np.max(np.abs(rows[:, 6])):.2g} %")
+    print(
+        f"steady: {steady}; largest deviation of streamwise {worst:.2g} %, of total {np.max(np.abs(rows[:, 6])):.2g} %"
+    )
     return 0 if steady and worst <= 100.0 * BOUND else 1
 
 

@@ -3,7 +3,8 @@
 
     compare.py POINTS        folder of `thalweg sweep points.yaml`
 
-Writes creep.csv and creep.png next to this script; ends with exit code 1 if a length is more than 2 % from the reference.
+Writes creep.csv and creep.png next to this script; ends with exit code 1 if a length is more than 2 % from the
+reference.
 """
 import csv
 import sys
@@ -34,7 +35,9 @@ def main(folder):
         worst = max(worst, *(abs(found / known - 1.0) for found, known in zip(lengths, reference)))
         rows.append([shields, lengths[0], reference[0], lengths[1], reference[1]])
         column = run.profiles["continuum"]
-        axes.semilogx(column["creep_velocity"][1:], -column["creep_depth"][1:] / DIAMETER, label=f"Shields number {shields:g}")
+        axes.semilogx(
+            column["creep_velocity"][1:], -column["creep_depth"][1:] / DIAMETER, label=f"Shields number {shields:g}"
+        )
     axes.set(xlabel="velocity of the grains, m/s (fluidity 0.01 1/s at -2 d)", ylabel="height over the surface, d")
     axes.legend()
     figure.tight_layout()

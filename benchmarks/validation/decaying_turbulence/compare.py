@@ -2,9 +2,9 @@
 """Grid turbulence of Comte-Bellot and Corrsin (1971) by large-eddy simulation: compare.py PROGRAM [--figure FILE]
 
 Makes a random solenoidal field with the spectrum measured at t U_0/M = 42, and its pressure; PROGRAM
-(bin/decaying_turbulence) advances it to 98 and 171, where energy and spectra are compared. Prints a table and pass or fail:
-the resolved energy must be within 10 % of that of the measured spectrum over the same wave numbers, for
-C_s = 0.17, which is Lilly's value for a cut-off in the inertial range. Exit code 0 if it passes.
+(bin/decaying_turbulence) advances it to 98 and 171, where energy and spectra are compared. Prints a table and pass or
+fail: the resolved energy must be within 10 % of that of the measured spectrum over the same wave numbers, for C_s =
+0.17, which is Lilly's value for a cut-off in the inertial range. Exit code 0 if it passes.
 """
 import argparse
 import subprocess

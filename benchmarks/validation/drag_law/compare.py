@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Drag on random arrays of spheres compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Drag on random arrays of spheres compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure
+FILE]
 
-RUN: folders of runs of drag_law.yaml; each becomes a row of the table (rows of other runs stay). F is the force on a sphere
-without the part from the mean pressure gradient, over 3 pi eta d U with the superficial velocity U. The force is the driving
-force on the fluid minus the part that accelerates it, per sphere, over the last half of the run. Prints the mean over the arrays
-of each setting with its standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass or fail. Exit code 0 if all pass.
+RUN: folders of runs of drag_law.yaml; each becomes a row of the table (rows of other runs stay). F is the force on a
+sphere without the part from the mean pressure gradient, over 3 pi eta d U with the superficial velocity U. The force is
+the driving force on the fluid minus the part that accelerates it, per sphere, over the last half of the run. Prints the
+mean over the arrays of each setting with its standard error, Beetstra et al. (2007) and Tenneti et al. (2011), and pass
+or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -60,9 +62,11 @@ def report(points):
         laws = beetstra_drag(phi, reynolds), tenneti_drag(phi, reynolds)
         good = min(laws) * (1.0 - ACCEPTED) <= drag <= max(laws) * (1.0 + ACCEPTED)
         passed = passed and good
-        print(f"solid fraction {phi:.3f}, Re {reynolds:6.4g}, {cells:g} cells, {collision}: F {drag:.2f} +- {error:.2f}; Beetstra "
-              f"{laws[0]:.2f} ({100 * (drag / laws[0] - 1):+.0f} %), Tenneti {laws[1]:.2f} ({100 * (drag / laws[1] - 1):+.0f} %): "
-              f"{'pass' if good else 'FAIL'}")
+        print(
+            f"solid fraction {phi:.3f}, Re {reynolds:6.4g}, {cells:g} cells, {collision}: F {drag:.2f} +- {error:.2f};"
+            f" Beetstra {laws[0]:.2f} ({100 * (drag / laws[0] - 1):+.0f} %), Tenneti"
+            f" {laws[1]:.2f} ({100 * (drag / laws[1] - 1):+.0f} %): {'pass' if good else 'FAIL'}"
+        )
     return passed
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """q* of the flume against time: compare.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
-Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number 0.028.
-The table of these means is updated, and all its rows are drawn. thalweg plot relation draws
-the runs against the Shields number.
+Draws means over half a second, and the mean and the deviation that Zhang et al. (2022) print at the Shields number
+0.028. The table of these means is updated, and all its rows are drawn. thalweg plot relation draws the runs against the
+Shields number.
 """
 import argparse
 import sys
@@ -49,7 +49,9 @@ def main():
                  for end, mean in zip(*window_means(folder.series))]
     rows = merged_rows(arguments.table, rows)
     for n, name in enumerate(dict.fromkeys(row["run"] for row in rows)):
-        ends, means = np.array([[float(row["until [s]"]), float(row["q_star [1]"])] for row in rows if row["run"] == name]).T
+        ends, means = np.array(
+            [[float(row["until [s]"]), float(row["q_star [1]"])] for row in rows if row["run"] == name]
+        ).T
         plt.plot(ends - 0.5 * WINDOW, means, "o-", markersize=3, color=colour_of(n), label=name)
     plt.axhspan(*literature.flume_band(), color="0.9",
                 label="Zhang et al. at 0.028, mean and deviation")

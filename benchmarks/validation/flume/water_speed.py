@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """q* of the flume against the speed of its water: water_speed.py RUN_FOLDER... [--figure FILE] [--table FILE]
 
-Each point is a mean over the time in which the fluid was averaged (analysis.fluid_statistics.from): q* with its standard error,
-and the mean water speed over the width, from two widths above the bed upwards, divided by that of the law of the wall at the side
-walls (thalweg.water). Open symbols: trt; squares: ten cells per diameter. The table of the points is updated, and all its rows
-are drawn.
+Each point is a mean over the time in which the fluid was averaged (analysis.fluid_statistics.from): q* with its
+standard error, and the mean water speed over the width, from two widths above the bed upwards, divided by that of the
+law of the wall at the side walls (thalweg.water). Open symbols: trt; squares: ten cells per diameter. The table of the
+points is updated, and all its rows are drawn.
 """
 import argparse
 import sys
@@ -46,14 +46,25 @@ def main():
     for folder in arguments.runs:
         run = thalweg.Run(folder)
         rate, mean, middle = measure(run)
-        rows.append(dict(zip(HEADINGS, [
-            folder.name, run.case["fluid"]["collision"], f"{run.diameter / run.case['domain']['spacing']:.1f}", f"{mean:.3f}",
-            f"{middle:.3f}", f"{rate.mean:.4f}", f"{rate.error:.4f}"])))
+        rows.append(
+            dict(
+                zip(
+                    HEADINGS,
+                    [
+                        folder.name, run.case["fluid"]["collision"],
+                        f"{run.diameter / run.case['domain']['spacing']:.1f}", f"{mean:.3f}", f"{middle:.3f}",
+                        f"{rate.mean:.4f}", f"{rate.error:.4f}",
+                    ],
+                )
+            )
+        )
     rows = merged_rows(arguments.table, rows)
     for n, row in enumerate(rows):
         speed, rate, error = (float(row[HEADINGS[column]]) for column in (3, 5, 6))
-        axes.errorbar(speed, rate, error, fmt="s" if float(row[HEADINGS[2]]) > 8.0 else "o", color=colour_of(n), capsize=3,
-                      mfc="none" if row["collision"] == "trt" else None, label=row["run"])
+        axes.errorbar(
+            speed, rate, error, fmt="s" if float(row[HEADINGS[2]]) > 8.0 else "o", color=colour_of(n), capsize=3,
+            mfc="none" if row["collision"] == "trt" else None, label=row["run"],
+        )
     axes.axhspan(*literature.flume_band(), color="0.9",
                  label="Zhang et al. at 0.028, mean and deviation")
     axes.axvline(1.0, color="0.6", lw=1)

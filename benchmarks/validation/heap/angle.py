@@ -19,7 +19,8 @@ FITTED = (0.15, 0.85)   # of the way from crest to edge: the crest is round, and
 
 
 def surface(run):
-    """Distance from the crest and height of the surface (m; of the highest grains, mean across), and number of grains."""
+    """Distance from the crest and height of the surface (m; of the highest grains, mean across), and number of
+    grains."""
     bed = read_bed(run / "bed.h5")
     place, radius = bed["position"], bed["radius"]
     on_plate = place[:, 2] > TOP

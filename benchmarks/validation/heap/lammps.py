@@ -2,8 +2,8 @@
 """The heap of case.yaml in LAMMPS, from the same bed: lammps.py BED FOLDER. The program is lmp, or what LMP names.
 
 LAMMPS's pair_style granular has the same springs. Its rolling model also has a spring, a dashpot and a limit (sds); its
-spring is the angular one divided by the square of the effective radius. Damping and rolling dashpots are those of the mean
-diameter. FOLDER/bed.h5 is what angle.py reads.
+spring is the angular one divided by the square of the effective radius. Damping and rolling dashpots are those of the
+mean diameter. FOLDER/bed.h5 is what angle.py reads.
 """
 import argparse
 import os

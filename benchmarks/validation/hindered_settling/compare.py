@@ -2,11 +2,11 @@
 """Settling velocity of suspensions against solid fraction, compared with Richardson and Zaki (1954):
 compare.py [RUN...] [--table FILE] [--figure FILE]
 
-RUN: folders of runs of hindered_settling.yaml; each becomes a row of the table (rows of other runs stay). The
-velocity of the grains relative to that of the whole volume is averaged from a third of the run on and corrected for the size of
-the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Naumann) and, for each Reynolds number, the exponent n of
-(1 - phi)^n with its error, with and without that correction, the exponent of Richardson and Zaki, the accepted difference, and
-pass or fail of the corrected exponent. Exit code 0 if all pass.
+RUN: folders of runs of hindered_settling.yaml; each becomes a row of the table (rows of other runs stay). The velocity
+of the grains relative to that of the whole volume is averaged from a third of the run on and corrected for the size of
+the box (Ladd 1990). Prints it over that of a single sphere (Schiller and Naumann) and, for each Reynolds number, the
+exponent n of (1 - phi)^n with its error, with and without that correction, the exponent of Richardson and Zaki, the
+accepted difference, and pass or fail of the corrected exponent. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -35,9 +35,9 @@ def exponent_of_richardson_and_zaki(reynolds):
 
 
 def missing_in_a_small_box(fraction, count):
-    """Velocity lost in a periodic box, over that of a single sphere: 1.76 S(0) (eta/eta_s) (phi/N)^(1/3), with the structure factor of
-    hard spheres (Carnahan and Starling) and the viscosity eta_s of the suspension (Krieger and Dougherty); A. J. C. Ladd, J. Chem.
-    Phys. 93 (1990) 3484. For slow flow."""
+    """Velocity lost in a periodic box, over that of a single sphere: 1.76 S(0) (eta/eta_s) (phi/N)^(1/3), with the
+    structure factor of hard spheres (Carnahan and Starling) and the viscosity eta_s of the suspension (Krieger and
+    Dougherty); A. J. C. Ladd, J. Chem. Phys. 93 (1990) 3484. For slow flow."""
     structure = (1.0 - fraction)**4 / (1.0 + 4.0 * fraction + 4.0 * fraction**2 - 4.0 * fraction**3 + fraction**4)
     fluidity = (1.0 - fraction / 0.64)**1.6
     return 1.76 * structure * fluidity * (fraction / count)**(1.0 / 3.0)
@@ -61,7 +61,9 @@ def measured(folder):
 
 
 def main():
-    rows, figure_name = compared_rows(__doc__, HERE / "velocities.csv", "hindered_settling.png", lambda folder: [measured(folder)])
+    rows, figure_name = compared_rows(
+        __doc__, HERE / "velocities.csv", "hindered_settling.png", lambda folder: [measured(folder)]
+    )
     table = np.array([[float(row[column]) for column in COLUMNS[1:]] for row in rows])
     figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
     passed = True
@@ -71,7 +73,10 @@ def main():
         phi, ratio, error = of_this[:, 1], of_this[:, 3] / of_this[:, 5], of_this[:, 4] / of_this[:, 5]
         missing = missing_in_a_small_box(phi, of_this[:, 2])
         for p, r, e, m in zip(phi, ratio, error, missing):
-            print(f"Re {reynolds:<6g} solid fraction {p:.3f}: {r:.3f} +- {e:.3f} of a single sphere, in a large box {r + m:.3f}")
+            print(
+                f"Re {reynolds:<6g} solid fraction {p:.3f}: {r:.3f} +- {e:.3f} of a single sphere, in a large box"
+                f" {r + m:.3f}"
+            )
         ratio = ratio + missing
         expected = exponent_of_richardson_and_zaki(reynolds)
         axes.errorbar(phi, ratio, error, fmt="o", color=colour, capsize=3, label=f"Re {reynolds:g}")
@@ -83,8 +88,11 @@ def main():
         in_this_box = np.polyfit(np.log(1.0 - phi), np.log(ratio - missing), 1)[0]
         good = abs(slope - expected) <= ACCEPTED
         passed = passed and good
-        print(f"Re {reynolds:<6g} n {slope:.2f} +- {np.sqrt(covariance[0, 0]):.2f}, {np.exp(intercept):.2f} at phi -> 0 "
-              f"({in_this_box:.2f} uncorrected); Richardson and Zaki {expected:.2f}, accepted +- {ACCEPTED}: {'pass' if good else 'FAIL'}")
+        print(
+            f"Re {reynolds:<6g} n {slope:.2f} +- {np.sqrt(covariance[0, 0]):.2f}, {np.exp(intercept):.2f} at phi -> 0"
+            f" ({in_this_box:.2f} uncorrected); Richardson and Zaki {expected:.2f}, accepted +- {ACCEPTED}:"
+            f" {'pass' if good else 'FAIL'}"
+        )
     axes.set(xlabel="solid fraction φ", ylabel="settling velocity over that of a single sphere", yscale="log")
     axes.grid(color="#e5e8ea", linewidth=0.8)
     axes.legend(fontsize=8)

@@ -2,17 +2,17 @@
 """First motions of settled beds as links of a chain, beside Clark et al. (2017), section III F.
 
 Reads the tables runs.csv of the sweeps first_motion*.yaml, which are kept here under the names of the sweeps, and the
-threshold Theta_c of motion that stops from shields_curve.csv. If a bed of length W begins to move where the weakest of its parts
-does, the share of beds that move at Theta is
+threshold Theta_c of motion that stops from shields_curve.csv. If a bed of length W begins to move where the weakest of
+its parts does, the share of beds that move at Theta is
 
   C = 1 - exp[-W ((Theta - Theta_0)/beta)^alpha]
 
-with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). Of spheres with
-quadratic drag Theta_0 is Theta_c in the paper: what begins to move in a large bed cannot stop. Elastic disks with linear drag
-stop at much lower Shields numbers, and Theta_0 is one of its own. Prints alpha that makes all beds together most likely, and the
-slope of the mean, with standard errors from resampled ensembles: with Theta_0 fitted as well, and of spheres with the Theta_c of
-the paper and the one found here, without the beds that begin to move below. The last is judged, of disks the first; exit code 0
-if all pass.
+with the same alpha, beta and Theta_0 for every length, and the mean of Theta - Theta_0 goes with W^(-1/alpha). Of
+spheres with quadratic drag Theta_0 is Theta_c in the paper: what begins to move in a large bed cannot stop. Elastic
+disks with linear drag stop at much lower Shields numbers, and Theta_0 is one of its own. Prints alpha that makes all
+beds together most likely, and the slope of the mean, with standard errors from resampled ensembles: with Theta_0 fitted
+as well, and of spheres with the Theta_c of the paper and the one found here, without the beds that begin to move below.
+The last is judged, of disks the first; exit code 0 if all pass.
 """
 import argparse
 import math
@@ -67,12 +67,15 @@ def first_motions(system):
             moving = float(row["figures.shields_number [1]"])
             found[grains, row["grains.0.placement.seed"]] = moving / (1.0 + 0.5 * system.step)
     sizes = sorted({grains for grains, _ in found})
-    return [(size / system.grains_per_length, np.array([value for (grains, _), value in found.items() if grains == size]))
-            for size in sizes]
+    return [
+        (size / system.grains_per_length, np.array([value for (grains, _), value in found.items() if grains == size]))
+        for size in sizes
+    ]
 
 
 def unlikelihood(first, log_beta, log_alpha, ensembles, step):
-    """Minus the logarithm of the likelihood with Theta_0 = first: a bed rests at one level of its ramp and moves at the next."""
+    """Minus the logarithm of the likelihood with Theta_0 = first: a bed rests at one level of its ramp and moves at the
+    next."""
     total = 0.0
     for length, middles in ensembles:
         resting, moving = middles * (1.0 - 0.5 * step), middles * (1.0 + 0.5 * step)
@@ -87,10 +90,14 @@ def weibull_fit(ensembles, step, given=None):
     options = {"maxiter": 2000, "xatol": 1e-4, "fatol": 1e-3}
     start = [math.log(0.2), math.log(2.0)]
     if given is not None:
-        found = minimize(lambda p: unlikelihood(given, *p, ensembles, step), start, method="Nelder-Mead", options=options)
+        found = minimize(
+            lambda p: unlikelihood(given, *p, ensembles, step), start, method="Nelder-Mead", options=options
+        )
         return math.exp(found.x[1]), given
     least = min(middles.min() for _, middles in ensembles)
-    found = minimize(lambda p: unlikelihood(*p, ensembles, step), [0.8 * least, *start], method="Nelder-Mead", options=options)
+    found = minimize(
+        lambda p: unlikelihood(*p, ensembles, step), [0.8 * least, *start], method="Nelder-Mead", options=options
+    )
     return math.exp(found.x[2]), found.x[0]
 
 
@@ -114,14 +121,19 @@ class Fit:
     slope_error: float
 
     def line(self, title, choice):
-        print(f"{title}, Theta_0 {self.first:.4f} +- {self.first_error:.4f} ({choice}; {self.left_out} beds begin below it): alpha "
-              f"{self.alpha:.2f} +- {self.alpha_error:.2f}, -1/alpha {-1 / self.alpha:.3f}, slope {self.slope:.3f} +- "
-              f"{self.slope_error:.3f}")
+        print(
+            f"{title}, Theta_0 {self.first:.4f} +- {self.first_error:.4f} ({choice}; {self.left_out} beds begin below"
+            f" it): alpha {self.alpha:.2f} +- {self.alpha_error:.2f}, -1/alpha {-1 / self.alpha:.3f}, slope"
+            f" {self.slope:.3f} +- {self.slope_error:.3f}"
+        )
 
 
 def fitted(ensembles, step, given=None, seed=1):
     """Weibull fit and slope, with standard errors from a hundred resampled ensembles."""
-    kept = [(length, middles if given is None else middles[middles * (1.0 - 0.5 * step) > given]) for length, middles in ensembles]
+    kept = [
+        (length, middles if given is None else middles[middles * (1.0 - 0.5 * step) > given])
+        for length, middles in ensembles
+    ]
 
     def analysed(beds):
         alpha, first = weibull_fit(beds, step, given)
@@ -136,7 +148,10 @@ def fitted(ensembles, step, given=None, seed=1):
 def judged(system, fit):
     """Whether alpha is that of the paper, and the slope of the mean -1/alpha."""
     good = abs(fit.alpha - system.alpha) <= ACCEPTED + fit.alpha_error
-    print(f"{system.title}: alpha {fit.alpha:.2f} +- {fit.alpha_error:.2f}, paper {system.alpha}: {'pass' if good else 'FAIL'}")
+    print(
+        f"{system.title}: alpha {fit.alpha:.2f} +- {fit.alpha_error:.2f}, paper {system.alpha}:"
+        f" {'pass' if good else 'FAIL'}"
+    )
     if math.isnan(fit.slope):
         return good
     straight = abs(fit.slope + 1.0 / fit.alpha) <= 2.0 * fit.slope_error
@@ -152,13 +167,19 @@ def draw(system, fit, left, right):
     x = np.linspace(0.0, 2.5, 100)
     left.plot(x, 1.0 - np.exp(-(math.gamma(1.0 + 1.0 / system.alpha) * x)**system.alpha), "k", lw=1,
               label=f"Weibull, α = {system.alpha}")
-    left.set(xlabel="(Θ$_f$ − Θ$_0$) over its mean", ylabel="beds that move", title=f"{system.title}, Θ$_0$ = {fit.first:.3g}")
+    left.set(
+        xlabel="(Θ$_f$ − Θ$_0$) over its mean", ylabel="beds that move",
+        title=f"{system.title}, Θ$_0$ = {fit.first:.3g}",
+    )
     left.legend(fontsize=8)
     lengths = np.array([length for length, _ in fit.ensembles])
     means = np.array([middles.mean() - fit.first for _, middles in fit.ensembles])
     errors = [middles.std() / math.sqrt(len(middles)) for _, middles in fit.ensembles]
     right.errorbar(lengths, means, errors, fmt="o", capsize=3)
-    right.plot(lengths, means[-1] * (lengths / lengths[-1])**(-1.0 / system.alpha), "k", lw=1, label=f"W$^{{-1/{system.alpha}}}$")
+    right.plot(
+        lengths, means[-1] * (lengths / lengths[-1]) ** (-1.0 / system.alpha), "k", lw=1,
+        label=f"W$^{{-1/{system.alpha}}}$",
+    )
     right.set(xscale="log", yscale="log", xlabel="length W [D]", ylabel="mean of Θ$_f$ − Θ$_0$")
     for axis in (right.xaxis, right.yaxis):
         axis.set_major_formatter(FormatStrFormatter("%g"))
@@ -169,16 +190,23 @@ def draw(system, fit, left, right):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--figure", default="first_motion.png", metavar="FILE")
-    parser.add_argument("--shortest", type=float, default=0.0, metavar="LENGTH", help="Leave out shorter beds, in diameters")
+    parser.add_argument(
+        "--shortest", type=float, default=0.0, metavar="LENGTH", help="Leave out shorter beds, in diameters"
+    )
     arguments = parser.parse_args()
     measured = [(first_motions(system), system) for system in SYSTEMS]
     measured = [(found, system) for found, system in measured if found]
-    figure, axes = plt.subplots(len(measured), 2, figsize=(10, 3.7 * len(measured)), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(
+        len(measured), 2, figsize=(10, 3.7 * len(measured)), layout="constrained", squeeze=False
+    )
     passed = True
     for (found, system), panels in zip(measured, axes):
         ensembles = [(length, middles) for length, middles in found if length >= arguments.shortest]
         for length, middles in ensembles:
-            print(f"{system.title}, {length:g} D long: {len(middles)} beds, mean {middles.mean():.4f}, deviation {middles.std():.4f}")
+            print(
+                f"{system.title}, {length:g} D long: {len(middles)} beds, mean {middles.mean():.4f}, deviation"
+                f" {middles.std():.4f}"
+            )
         fit = fitted(ensembles, system.step)
         fit.line(system.title, "fitted")
         if system.theta_c:

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Profiles of beds in motion beside figure 6 of Clark et al. (2017): profiles.py [RUN...] [--table FILE] [--figure FILE]
+"""Profiles of beds in motion beside figure 6 of Clark et al. (2017): profiles.py [RUN...] [--table FILE] [--figure
+FILE]
 
-RUN: folders of runs of profiles.yaml, whose profiles go into the table (one row a run and height; those of other runs in it stay).
-The second half of each run is averaged. Prints, by Re_*, the height that grains in motion reach above the top of the bed, and in
-the mobile region the ratio of grain and fluid velocity and the acceleration; and what the paper says of each. Exit code 0 if all
-is as there.
+RUN: folders of runs of profiles.yaml, whose profiles go into the table (one row a run and height; those of other runs
+in it stay). The second half of each run is averaged. Prints, by Re_*, the height that grains in motion reach above the
+top of the bed, and in the mobile region the ratio of grain and fluid velocity and the acceleration; and what the paper
+says of each. Exit code 0 if all is as there.
 
 The velocity of the fluid at a grain follows from the fluid force on it, and the solid fraction from that velocity.
 """
@@ -28,8 +29,10 @@ BIN = 0.25         # D
 TOP_FRACTION = 0.42   # of the grains of the top layer (figure 4 of the paper)
 MOBILE = 0.25      # D above the top of the bed; in the paper 5.25 D above the floor, under beds 5 D high
 MOVING = 0.1       # of v_0: grains that are faster are in motion, for the height they reach
-COLUMNS = ["run", "reynolds_number [1]", "shields_number [1]", "z [D]", "grains [1]", "solid_fraction [1]", "v_grain [v_0]",
-           "v_fluid [v_0]", "acceleration [shields_number g']"]
+COLUMNS = [
+    "run", "reynolds_number [1]", "shields_number [1]", "z [D]", "grains [1]", "solid_fraction [1]", "v_grain [v_0]",
+    "v_fluid [v_0]", "acceleration [shields_number g']",
+]
 
 
 class Fluid:
@@ -58,7 +61,8 @@ class Fluid:
 
 
 def samples(run):
-    """One row a grain and frame of the second half: z, solid fraction, grain and fluid velocity over v_0, acceleration."""
+    """One row a grain and frame of the second half: z, solid fraction, grain and fluid velocity over v_0,
+    acceleration."""
     fluid = Fluid(run.case["model_fluid"])
     density = float(run.case["grains"][0]["density"])
     half = 0.5 * run.grains[-1].time
@@ -99,8 +103,8 @@ def top_of(column):
 
 
 def means(column):
-    """(height above the top that grains in motion reach, v_grain/v_fluid and acceleration of the mobile region), by numbers of
-    grains."""
+    """(height above the top that grains in motion reach, v_grain/v_fluid and acceleration of the mobile region), by
+    numbers of grains."""
     height = column["z"] - top_of(column)
     mobile = height > MOBILE
     count = column["grains"][mobile]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Thresholds of motion beside Clark et al. (2017): thresholds.py [--figure FILE]
 
-Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml, inertia.yaml, friction.yaml and
-friction_long.yaml, and runs.csv of long_watch.yaml and hysteresis.yaml, which are kept here under the names of the sweeps; those
-that are missing are left out. Prints every threshold with half the width of its bracket, the value of the paper, what is accepted,
-and pass or fail. Exit code 0 if all pass.
+Reads the tables thresholds.csv of the sweeps shields_curve.yaml, linear_drag.yaml, lift.yaml, inertia.yaml,
+friction.yaml and friction_long.yaml, and runs.csv of long_watch.yaml and hysteresis.yaml, which are kept here under the
+names of the sweeps; those that are missing are left out. Prints every threshold with half the width of its bracket, the
+value of the paper, what is accepted, and pass or fail. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -35,7 +35,9 @@ def thresholds(name, state="found"):
     path = HERE / f"{name}.csv"
     if not path.exists():
         return []
-    rows = [{HEADING.match(head)[1].rpartition(".")[2]: value for head, value in row.items()} for row in read_rows(path)]
+    rows = [
+        {HEADING.match(head)[1].rpartition(".")[2]: value for head, value in row.items()} for row in read_rows(path)
+    ]
     return [{head: float(value) for head, value in row.items() if head != "state" and value} for row in rows
             if row["state"] == state]
 
@@ -89,8 +91,10 @@ def standard_error(values):
 
 def points(axes, rows, x, **style):
     if rows:
-        axes.errorbar([row[x] for row in rows], [row["shields_number"] for row in rows], [row["half_width"] for row in rows],
-                      capsize=3, **style)
+        axes.errorbar(
+            [row[x] for row in rows], [row["shields_number"] for row in rows], [row["half_width"] for row in rows],
+            capsize=3, **style,
+        )
 
 
 def with_lift(threshold, ratio):
@@ -98,8 +102,9 @@ def with_lift(threshold, ratio):
 
 
 def watched_as_in_the_paper(axes, report, shorter):
-    """Ten beds at each of some Shields numbers and Re_* = 0.1, for a million collision times. Section III B: it is below the threshold
-    if more than half of them stop. shorter: the threshold of beds watched for less; what stops by then is below this one as well."""
+    """Ten beds at each of some Shields numbers and Re_* = 0.1, for a million collision times. Section III B: it is
+    below the threshold if more than half of them stop. shorter: the threshold of beds watched for less; what stops by
+    then is below this one as well."""
     beds = runs("long_watch")
     if not beds:
         return
@@ -130,7 +135,10 @@ def shields_curve(axes, report):
             if low:
                 watched_as_in_the_paper(axes, report, row)
     for row in thresholds("inertia"):
-        report.line(f"Re_* 100, B_2 D/m {row['inertial_coefficient']:g}, restitution {row['restitution']:g}", row, HIGH, HIGH_ACCEPTED)
+        report.line(
+            f"Re_* 100, B_2 D/m {row['inertial_coefficient']:g}, restitution {row['restitution']:g}", row, HIGH,
+            HIGH_ACCEPTED,
+        )
     linear = thresholds("linear_drag")
     for restitution, colour in ((LITTLE_RESTITUTION, "tab:blue"), (0.2, "tab:red")):
         of_this = [row for row in linear if row["restitution"] == restitution]
@@ -138,18 +146,27 @@ def shields_curve(axes, report):
                label=f"linear drag, restitution {restitution:g}")
     for row in linear:
         if row["restitution"] <= 0.2 and row["reynolds_number"] > 10:
-            report.line(f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row, HIGH, HIGH_ACCEPTED)
+            report.line(
+                f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row, HIGH,
+                HIGH_ACCEPTED,
+            )
     for row in thresholds("linear_drag", "holds everywhere"):
-        report.below(f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row["upper"], HIGH)
+        report.below(
+            f"linear drag, restitution {row['restitution']:g}, Re_* {row['reynolds_number']:g}", row["upper"], HIGH
+        )
     for level in (LOW, HIGH):
         axes.axhline(level, color="0.6", lw=0.8)
-    axes.text(0.98, 0.97, "lines: plateaus of the paper", transform=axes.transAxes, ha="right", va="top", fontsize=8, color="0.4")
+    axes.text(
+        0.98, 0.97, "lines: plateaus of the paper", transform=axes.transAxes, ha="right", va="top", fontsize=8,
+        color="0.4",
+    )
     axes.set(xscale="log", xlabel="Re$_*$, as printed", ylabel="Θ$_c$", ylim=(0.0, None), title="drag")
     return rows
 
 
 def hysteresis(report):
-    """Where beds at rest, 20 D long, begin to move. Section III C: the same for all drag laws and restitution coefficients."""
+    """Where beds at rest, 20 D long, begin to move. Section III C: the same for all drag laws and restitution
+    coefficients."""
     kinds = {}
     for bed in runs("hysteresis"):
         if bed["state"] != "done":
@@ -157,7 +174,9 @@ def hysteresis(report):
         kind = f"{bed['model_fluid.drag']} drag, restitution {float(bed['contact.restitution [1]']):g}"
         kinds.setdefault(kind, []).append(float(bed["figures.shields_number [1]"]))
     for kind, found in kinds.items():
-        print(f"beds at rest, {kind}: {len(found)} begin to move at {np.mean(found):.4f} +- {standard_error(found):.4f}")
+        print(
+            f"beds at rest, {kind}: {len(found)} begin to move at {np.mean(found):.4f} +- {standard_error(found):.4f}"
+        )
     report.alike("beds at rest begin to move", list(kinds.values()))
 
 
@@ -168,8 +187,10 @@ def lift(axes, report, without):
         of_this = [row for row in rows if row["reynolds_number"] == reynolds]
         if not at_rest or not of_this:
             continue
-        points(axes, [row | {"lift_ratio": 0.0} for row in at_rest] + sorted(of_this, key=lambda row: row["lift_ratio"]),
-               "lift_ratio", fmt="s", color=colour, label=f"Re$_*$ {reynolds:g}")
+        points(
+            axes, [row | {"lift_ratio": 0.0} for row in at_rest] + sorted(of_this, key=lambda row: row["lift_ratio"]),
+            "lift_ratio", fmt="s", color=colour, label=f"Re$_*$ {reynolds:g}",
+        )
         ratio = np.linspace(0.0, 3.0, 50)
         axes.plot(ratio, with_lift(at_rest[0]["shields_number"], ratio), color=colour, lw=0.8)
         for row in of_this:
@@ -198,15 +219,18 @@ def friction(axes, report, without):
 
 
 def friction_as_in_the_paper(axes, report):
-    """Disks at Re_* = 0.5, watched for a million collision times. A search that has not been finished gives a lower limit."""
+    """Disks at Re_* = 0.5, watched for a million collision times. A search that has not been finished gives a lower
+    limit."""
     found, limits = thresholds("friction_long"), thresholds("friction_long", "unfinished")
     without = [row for row in found if row["friction"] < 0.01]
     others = [row for row in found + limits if row["friction"] >= 0.01]
     if not without or not others:
         return
     points(axes, found, "friction", fmt="D", color="tab:purple", mfc="none", label="the same, as long as in the paper")
-    axes.plot([row["friction"] for row in limits], [row["lower"] for row in limits], "^", color="tab:purple", mfc="none",
-              label="lower limits")
+    axes.plot(
+        [row["friction"] for row in limits], [row["lower"] for row in limits], "^", color="tab:purple", mfc="none",
+        label="lower limits",
+    )
     above = max(row["lower"] for row in others)
     least = above / without[0]["upper"]
     most = max(row["upper"] for row in others) / without[0]["lower"]

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Rebounds of glass spheres in water: compare.py RUN_FOLDER... [--figure FILE]
 
-Prints for the first impact of every run: duration of the contact in fluid steps, velocity and Stokes number of the impact,
-restitution over dry restitution, exp(-35/St), and pass or fail (0.1). Velocities as in benchmarks/validation/bounce. Exit code 0
-if all pass.
+Prints for the first impact of every run: duration of the contact in fluid steps, velocity and Stokes number of the
+impact, restitution over dry restitution, exp(-35/St), and pass or fail (0.1). Velocities as in
+benchmarks/validation/bounce. Exit code 0 if all pass.
 """
 import argparse
 import math

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Slow rebounds of glass spheres in water, without gravity: compare_slow.py RUN_FOLDER...
 
-Prints for every run the speed at a gap of a tenth of a diameter, the Stokes number of the two bodies there,
-St = m* v/(6 pi eta R*^2), the largest speed after the end of the contact over the speed before and the dry restitution, exp(-35/St), and
-pass or fail (0.1). Exit code 0 if all pass.
+Prints for every run the speed at a gap of a tenth of a diameter, the Stokes number of the two bodies there, St = m*
+v/(6 pi eta R*^2), the largest speed after the end of the contact over the speed before and the dry restitution,
+exp(-35/St), and pass or fail (0.1). Exit code 0 if all pass.
 """
 import argparse
 import math

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Mean velocity over a rough bed compared with direct simulations: compare.py [RUN...] [--table FILE] [--figure FILE]
 
-RUN: folders of runs of the case of tutorial 5; each becomes a row of the table (rows of other runs stay). The mean velocity is that
-of the last third of the run. Prints it next to that of Mazzuoli and Uhlmann (2017), and pass or fail. Exit code 0 if all pass.
+RUN: folders of runs of the case of tutorial 5; each becomes a row of the table (rows of other runs stay). The mean
+velocity is that of the last third of the run. Prints it next to that of Mazzuoli and Uhlmann (2017), and pass or fail.
+Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -21,8 +22,10 @@ from thalweg.comparison import compared_rows
 from thalweg.literature import SPHERE_CHANNEL_MEAN
 from thalweg.rough_bed import rough_flow, roughness_of
 
-COLUMNS = ["run", "cells [1]", "subgrid_model", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
-           "roughness [d]"]
+COLUMNS = [
+    "run", "cells [1]", "subgrid_model", "grain_reynolds_number [1]", "depth [d]", "mean_velocity [u*]", "error [u*]",
+    "roughness [d]",
+]
 ACCEPTED = 0.05   # of the mean velocity: rounding of the simulations' printed numbers and two standard errors of a run
 
 
@@ -47,10 +50,12 @@ def report(rows):
         difference = v["mean_velocity [u*]"] / SPHERE_CHANNEL_MEAN - 1.0
         good = abs(difference) <= ACCEPTED
         passed = passed and good
-        print(f"{row['run']}: {v['cells [1]']:.3g} cells, {model if model.isalpha() else 'C_s ' + model}, mean velocity "
-              f"{v['mean_velocity [u*]']:.2f} +- {v['error [u*]']:.2f} u* (reference {SPHERE_CHANNEL_MEAN:.2f}, {100 * difference:+.0f} "
-              f"%), k_s {v['roughness [d]']:.2f} d ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): "
-              f"{'pass' if good else 'FAIL'}")
+        print(
+            f"{row['run']}: {v['cells [1]']:.3g} cells, {model if model.isalpha() else 'C_s ' + model}, mean velocity"
+            f" {v['mean_velocity [u*]']:.2f} +- {v['error [u*]']:.2f} u* (reference {SPHERE_CHANNEL_MEAN:.2f},"
+            f" {100 * difference:+.0f} %), k_s {v['roughness [d]']:.2f} d"
+            f" ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): {'pass' if good else 'FAIL'}"
+        )
     return passed
 
 
@@ -60,8 +65,11 @@ def draw(rows, name):
     for cells, colour in (("6", "#c0392b"), ("10", "#14496e")):
         chosen = sorted((row for row in rows if row["cells [1]"] == cells), key=lambda row: row["subgrid_model"])
         of = lambda column: np.array([float(row[column]) for row in chosen])
-        axes.errorbar([models.index(row["subgrid_model"]) for row in chosen], of("mean_velocity [u*]") / SPHERE_CHANNEL_MEAN, of("error [u*]") / SPHERE_CHANNEL_MEAN,
-                      marker="o", color=colour, capsize=3, label=f"{cells} cells a diameter")
+        axes.errorbar(
+            [models.index(row["subgrid_model"]) for row in chosen], of("mean_velocity [u*]") / SPHERE_CHANNEL_MEAN,
+            of("error [u*]") / SPHERE_CHANNEL_MEAN, marker="o", color=colour, capsize=3,
+            label=f"{cells} cells a diameter",
+        )
     axes.axhspan(1.0 - ACCEPTED, 1.0 + ACCEPTED, color="0.9")
     axes.set_xticks(range(len(models)), models)
     axes.set(xlabel="subgrid model, or its constant $C_s$", ylabel="mean velocity over that of the direct simulation")
@@ -71,7 +79,9 @@ def draw(rows, name):
 
 
 def main():
-    rows, figure = compared_rows(__doc__, HERE / "rough_bed.csv", HERE / "rough_bed.png", lambda folder: [measured(folder)])
+    rows, figure = compared_rows(
+        __doc__, HERE / "rough_bed.csv", HERE / "rough_bed.png", lambda folder: [measured(folder)]
+    )
     passed = report(rows)
     draw(rows, figure)
     return 0 if passed else 1

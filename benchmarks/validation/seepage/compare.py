@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Speed of seepage through dense random arrays compared with published drag laws: compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Speed of seepage through dense random arrays compared with published drag laws: compare.py [RUN...] [--table FILE]
+[--figure FILE]
 
-RUN: folders of runs of seepage.yaml; each becomes a row of the table (rows of other runs stay). The speed is the superficial
-velocity at the end of the run over the one at which a drag law balances the same driving force. The bound is that of drag_law: the
-drag between the laws of Beetstra et al. (2007) and Tenneti et al. (2011), or at most 10 % beyond. Prints the mean over the arrays
-of each setting, and pass or fail. Exit code 0 if all pass.
+RUN: folders of runs of seepage.yaml; each becomes a row of the table (rows of other runs stay). The speed is the
+superficial velocity at the end of the run over the one at which a drag law balances the same driving force. The bound
+is that of drag_law: the drag between the laws of Beetstra et al. (2007) and Tenneti et al. (2011), or at most 10 %
+beyond. Prints the mean over the arrays of each setting, and pass or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -29,10 +30,13 @@ METHODS = ["default", "bgk, as published"]
 
 
 def speed_of_law(law, array):
-    """Superficial velocity U at which spheres with the drag 3 pi eta d U law(phi, U d/nu) hold the driven fluid back."""
+    """Superficial velocity U at which spheres with the drag 3 pi eta d U law(phi, U d/nu) hold the driven fluid
+    back."""
     phi, viscosity, diameter = array.solid_fraction, array.viscosity, array.diameter
     given = array.acceleration * (1.0 - phi) * array.volume / array.count   # over the fluid's density, per sphere
-    return brentq(lambda u: 3.0 * np.pi * viscosity * diameter * u * law(phi, u * diameter / viscosity) - given, 1e-9, 1.0)
+    return brentq(
+        lambda u: 3.0 * np.pi * viscosity * diameter * u * law(phi, u * diameter / viscosity) - given, 1e-9, 1.0
+    )
 
 
 def measured(folder):
@@ -48,7 +52,9 @@ def means(rows):
     """For each number of cells and method: the speed over those of the two laws."""
     settings = {}
     for row in rows:
-        settings.setdefault((float(row["cells [1]"]), row["method"]), []).append([float(row[column]) for column in COLUMNS[4:]])
+        settings.setdefault((float(row["cells [1]"]), row["method"]), []).append(
+            [float(row[column]) for column in COLUMNS[4:]]
+        )
     for (cells, method), values in sorted(settings.items(), key=lambda item: (item[0][0], METHODS.index(item[0][1]))):
         speed, beetstra, tenneti = np.array(values).T
         yield cells, method, len(values), np.mean(speed / beetstra), np.mean(speed / tenneti)
@@ -60,8 +66,10 @@ def report(points):
         # Nearly linear at these Reynolds numbers: a drag higher by a tenth is a speed lower by as much.
         good = min(by_beetstra, by_tenneti) <= 1.0 + ACCEPTED and max(by_beetstra, by_tenneti) >= 1.0 - ACCEPTED
         passed = passed and good
-        print(f"{cells:g} cells, {method}, arrays: {arrays}: speed {by_beetstra:.3f} of Beetstra's, {by_tenneti:.3f} of Tenneti's: "
-              f"{'pass' if good else 'FAIL'}")
+        print(
+            f"{cells:g} cells, {method}, arrays: {arrays}: speed {by_beetstra:.3f} of Beetstra's, {by_tenneti:.3f} of"
+            f" Tenneti's: {'pass' if good else 'FAIL'}"
+        )
     return passed
 
 

@@ -43,8 +43,10 @@ def main():
         difference = fastest / measured[case] - 1.0
         good = abs(difference) <= ACCEPTED
         passed = passed and good
-        print(f"{name}: u_max {fastest:.5f} m/s, measured {measured[case]:.5f} m/s, difference {100 * difference:+.1f} %: "
-              f"{'pass' if good else 'FAIL'}")
+        print(
+            f"{name}: u_max {fastest:.5f} m/s, measured {measured[case]:.5f} m/s, difference {100 * difference:+.1f} %:"
+            f" {'pass' if good else 'FAIL'}"
+        )
         line, = top.plot(times, velocities, label=name)
         top.axhline(-measured[case], color=line.get_color(), linestyle="--", linewidth=0.8)
         bottom.plot(times, [1e3 * (h - RADIUS) for h in heights], color=line.get_color())

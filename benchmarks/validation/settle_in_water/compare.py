@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compares spheres settling in water with Schiller and Naumann: compare.py RUN_FOLDER... [--figure FILE]
 
-The terminal velocity is the mean over the fall from the tenth diameter to three diameters above the floor. Prints it, the
-reference, the difference, the drag coefficient, and pass or fail (10 %). Exit code 0 if all pass.
+The terminal velocity is the mean over the fall from the tenth diameter to three diameters above the floor. Prints it,
+the reference, the difference, the drag coefficient, and pass or fail (10 %). Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -47,9 +47,11 @@ def main():
         drag = 4.0 * (grain["density"] / 1000.0 - 1.0) * 9.8 * diameter / (3.0 * velocity ** 2)
         good = abs(velocity / reference - 1.0) <= ACCEPTED
         passed = passed and good
-        print(f"{run.name}: {velocity:.4f} m/s over {(heights[first] - heights[last]) / diameter:.1f} diameters, reference "
-              f"{reference:.3f} m/s, difference {100 * (velocity / reference - 1):+.1f} %, drag coefficient {drag:.3f}: "
-              f"{'pass' if good else 'FAIL'}")
+        print(
+            f"{run.name}: {velocity:.4f} m/s over {(heights[first] - heights[last]) / diameter:.1f} diameters,"
+            f" reference {reference:.3f} m/s, difference {100 * (velocity / reference - 1):+.1f} %, drag coefficient"
+            f" {drag:.3f}: {'pass' if good else 'FAIL'}"
+        )
         plt.plot(times, [-v for v in velocities], label=run.name)
     plt.axhline(reference, color="k", linestyle="--", label="Schiller and Naumann")
     plt.xlabel("time [s]")

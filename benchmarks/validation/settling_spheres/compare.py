@@ -59,7 +59,8 @@ def measured(folder):
 
 
 def reynolds_number(row, reference):
-    """As the reference has it: of the magnitude of the velocity where that has a horizontal part, else of the vertical one."""
+    """As the reference has it: of the magnitude of the velocity where that has a horizontal part, else of the vertical
+    one."""
     vertical, horizontal = float(row["vertical_velocity [u_ref]"]), float(row["horizontal_velocity [u_ref]"])
     velocity = np.hypot(vertical, horizontal) if reference["horizontal_velocity [u_ref]"] else vertical
     return float(row["galileo_number [1]"]) * velocity
@@ -80,10 +81,15 @@ def report(rows, references):
             good = abs(reynolds / expected - 1.0) <= ACCEPTED
             passed, verdict = passed and good, ": pass" if good else ": FAIL"
         vertical, horizontal = float(row["vertical_velocity [u_ref]"]), float(row["horizontal_velocity [u_ref]"])
-        angle, error, deviation = np.degrees(np.arctan(horizontal / vertical)), *(float(row[name]) for name in COLUMNS[7:9])
-        print(f"{row['run']}: {row['cells [1]']} cells, {row['collision']}: Re {reynolds:.1f}, reference {expected:.1f}, "
-              f"{100 * (reynolds / expected - 1):+.1f} %; vertical {vertical:.3f} +- {error:.3f}, deviation {deviation:.3f}, "
-              f"horizontal {horizontal:.3f}, {angle:.1f} degrees, {path(row)} ({reference['regime']}){verdict}")
+        angle, error, deviation = np.degrees(np.arctan(horizontal / vertical)), *(
+            float(row[name]) for name in COLUMNS[7:9]
+        )
+        print(
+            f"{row['run']}: {row['cells [1]']} cells, {row['collision']}: Re {reynolds:.1f}, reference {expected:.1f},"
+            f" {100 * (reynolds / expected - 1):+.1f} %; vertical {vertical:.3f} +- {error:.3f}, deviation"
+            f" {deviation:.3f}, horizontal {horizontal:.3f}, {angle:.1f} degrees,"
+            f" {path(row)} ({reference['regime']}){verdict}"
+        )
     return passed
 
 

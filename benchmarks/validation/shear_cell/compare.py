@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Rheology of the shear cell and the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure FILE]
+"""Rheology of the shear cell and the flow rule of Zhang et al. (2022): compare.py [RUN...] [--table FILE] [--figure
+FILE]
 
-RUN: folders of runs of shear_cell.yaml or others of the same case; each becomes a row of the table (rows of other runs stay). All
-values are means over the heights at least 1.5 diameters from the layers of glued grains. The error is that of the stress on the top
-in time. Prints each run with eqs. 20 and 21, the viscosity of the suspension with the laws of Batchelor and Green (1972)
-and Boyer et al. (2011), how much the stress differs over the height, and pass or fail. Exit code 0 if all pass.
+RUN: folders of runs of shear_cell.yaml or others of the same case; each becomes a row of the table (rows of other runs
+stay). All values are means over the heights at least 1.5 diameters from the layers of glued grains. The error is that
+of the stress on the top in time. Prints each run with eqs. 20 and 21, the viscosity of the suspension with the laws of
+Batchelor and Green (1972) and Boyer et al. (2011), how much the stress differs over the height, and pass or fail. Exit
+code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -22,10 +24,11 @@ from thalweg import Run, mean_with_error
 from thalweg.comparison import compared_rows
 from thalweg.rheology import flow_state, mixed_fraction, mixed_friction, solid_stress
 
-COLUMNS = ["run", "links", "cells [1]", "lubrication", "solid_fraction [1]", "shear_rate [1/s]", "fluid_viscosity [Pa s]",
-           "pressure [Pa]",
-           "normal_stress [Pa]", "shear_stress [Pa]", "contact_stress [Pa]", "kinetic_stress [Pa]", "fluid_part [Pa]", "total_stress [Pa]", "total_spread [1]", "error [1]",
-           "viscous_number [1]", "mixed_number [1]"]
+COLUMNS = [
+    "run", "links", "cells [1]", "lubrication", "solid_fraction [1]", "shear_rate [1/s]", "fluid_viscosity [Pa s]",
+    "pressure [Pa]", "normal_stress [Pa]", "shear_stress [Pa]", "contact_stress [Pa]", "kinetic_stress [Pa]",
+    "fluid_part [Pa]", "total_stress [Pa]", "total_spread [1]", "error [1]", "viscous_number [1]", "mixed_number [1]",
+]
 ACCEPTED_FRACTION = 0.03   # of the solid fraction: half the distance of the jammed states of rough and smooth spheres
 ACCEPTED_FRICTION = 0.2    # of mu
 ACCEPTED_DILUTE = 0.05     # of the viscosity below a solid fraction of 0.06
@@ -44,7 +47,9 @@ def measured(folder):
     grains, fluid = run.case["grains"], run.case["fluid"]
     diameter = float(grains[0]["diameter"])
     viscosity = float(fluid["density"]) * float(fluid["kinematic_viscosity"])
-    lower, upper = float(grains[1]["placement"]["region"]["upper"][2]), float(grains[2]["placement"]["region"]["lower"][2])
+    lower, upper = float(grains[1]["placement"]["region"]["upper"][2]), float(
+        grains[2]["placement"]["region"]["lower"][2]
+    )
     z = layers["z"]
     core = (z > lower + 1.5 * diameter) & (z < upper - 1.5 * diameter)
     phi = layers["solid_fraction"]
@@ -56,18 +61,22 @@ def measured(folder):
     later = run.series["time"] > run.averaged_from("stress_balance")
     on_top = mean_with_error(stress_on_top(run)[later])
     mean_of = lambda name, column: layers[name][core, column].mean()
-    values = [state.solid_fraction, rate, viscosity, state.pressure, -stress[2, 2], state.shear_stress, mean_of("contact_stress", 2),
-              mean_of("kinetic_stress", 4), mean_of("grain_fluid_stress", 2), total.mean(), np.ptp(total) / total.mean(),
-              on_top.error / on_top.mean, state.viscous_number, state.mixed_number]
+    values = [
+        state.solid_fraction, rate, viscosity, state.pressure, -stress[2, 2], state.shear_stress,
+        mean_of("contact_stress", 2), mean_of("kinetic_stress", 4), mean_of("grain_fluid_stress", 2), total.mean(),
+        np.ptp(total) / total.mean(), on_top.error / on_top.mean, state.viscous_number, state.mixed_number,
+    ]
     coupling = run.case["coupling"]
-    names = [run.folder.name, coupling.get("links", "bouzidi"), f"{diameter / float(run.case['domain']['spacing']):.4g}",
-             "on" if "lubrication" in coupling else "off"]
+    names = [
+        run.folder.name, coupling.get("links", "bouzidi"), f"{diameter / float(run.case['domain']['spacing']):.4g}",
+        "on" if "lubrication" in coupling else "off",
+    ]
     return dict(zip(COLUMNS, names + [f"{float(value):.5g}" for value in values]))
 
 
 def batchelor(phi):
-    """Viscosity of a dilute suspension over that of the fluid, in simple shear; G. K. Batchelor and J. T. Green, J. Fluid Mech. 56
-    (1972) 401; to first order that of Einstein."""
+    """Viscosity of a dilute suspension over that of the fluid, in simple shear; G. K. Batchelor and J. T. Green, J.
+    Fluid Mech. 56 (1972) 401; to first order that of Einstein."""
     return 1.0 + 2.5 * phi + 7.6 * phi**2
 
 
@@ -97,12 +106,15 @@ def report(rows):
         if phi < 0.06:
             good = abs(relative / batchelor(phi) - 1.0) <= ACCEPTED_DILUTE
         passed = passed and good
-        print(f"{row['run']}: solid fraction {phi:.3f}, I_m {mixed:.3g} (eq. 21: {mixed_fraction(mixed):.3f}), mu {mu:.3f} (eq. 20: "
-              f"{rule:.3f}, {100 * (mu / rule - 1):+.0f} %), over the normal stress {of_boyer[0]:.3f} (Boyer {of_boyer[1]:.3f}), "
-              f"viscosity {relative:.3f} +- {relative * v['error [1]']:.3f} (Batchelor "
-              f"{batchelor(phi):.3f}, Boyer {boyer(phi) if phi < 0.58 else np.nan:.3g}), contacts "
-              f"{100 * v['contact_stress [Pa]'] / v['total_stress [Pa]']:.0f} %, stress over the height "
-              f"{100 * v['total_spread [1]']:.1f} %: {'pass' if good else 'FAIL'}")
+        print(
+            f"{row['run']}: solid fraction {phi:.3f}, I_m {mixed:.3g} (eq. 21: {mixed_fraction(mixed):.3f}), mu"
+            f" {mu:.3f} (eq. 20: {rule:.3f}, {100 * (mu / rule - 1):+.0f} %), over the normal stress"
+            f" {of_boyer[0]:.3f} (Boyer {of_boyer[1]:.3f}), viscosity {relative:.3f} +-"
+            f" {relative * v['error [1]']:.3f} (Batchelor {batchelor(phi):.3f}, Boyer"
+            f" {boyer(phi) if phi < 0.58 else np.nan:.3g}), contacts"
+            f" {100 * v['contact_stress [Pa]'] / v['total_stress [Pa]']:.0f} %, stress over the height"
+            f" {100 * v['total_spread [1]']:.1f} %: {'pass' if good else 'FAIL'}"
+        )
     return passed
 
 
@@ -145,7 +157,9 @@ def draw(rows, name):
 
 
 def main():
-    rows, figure_name = compared_rows(__doc__, HERE / "rheology.csv", "shear_cell.png", lambda folder: [measured(folder)])
+    rows, figure_name = compared_rows(
+        __doc__, HERE / "rheology.csv", "shear_cell.png", lambda folder: [measured(folder)]
+    )
     passed = report(rows)
     draw(rows, figure_name)
     return 0 if passed else 1

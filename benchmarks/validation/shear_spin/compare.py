@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compares the spin of a free sphere in simple shear with half the shear rate: compare.py RUN_FOLDER... [--figure FILE]
 
-Prints the spin over the shear rate at the end of every run, the reference, their difference, and pass or fail (3 %); draws
-the spin against time. Exit code 0 if all pass.
+Prints the spin over the shear rate at the end of every run, the reference, their difference, and pass or fail (3 %);
+draws the spin against time. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -46,8 +46,10 @@ def main():
         ratio = values[-1] / rate
         good = abs(ratio / reference - 1.0) <= ACCEPTED
         passed = passed and good
-        print(f"{run.name}: Reynolds number {reynolds:.3g}, spin {ratio:.4f} of the shear rate, reference {reference:.4f}, "
-              f"difference {100 * (ratio / reference - 1):+.2f} %: {'pass' if good else 'FAIL'}")
+        print(
+            f"{run.name}: Reynolds number {reynolds:.3g}, spin {ratio:.4f} of the shear rate, reference"
+            f" {reference:.4f}, difference {100 * (ratio / reference - 1):+.2f} %: {'pass' if good else 'FAIL'}"
+        )
         plt.plot(times, [v / rate for v in values], label=f"Re {reynolds:.2g}")
     plt.axhline(0.5, color="k", linestyle=":", label="Jeffery 1922")
     plt.xlabel("time [s]")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Profiles of the side-wall channel against the law of the wall: compare.py [--figure FILE] PROFILE.csv ...
 
-Prints for every profile (output of bin/turbulent_channel) the difference from u+ = ln(y+)/0.41 + 5 in the first cell and
-the smallest and largest outside it, in per cent, and pass or fail (5 %).
+Prints for every profile (output of bin/turbulent_channel) the difference from u+ = ln(y+)/0.41 + 5 in the first cell
+and the smallest and largest outside it, in per cent, and pass or fail (5 %).
 """
 import argparse
 import sys
@@ -36,7 +36,9 @@ def main():
               f"{'passed' if good else 'failed'} |")
         axis.semilogx(*zip(*profile), "o-", ms=3, lw=0.8, label=file.stem)
     y = [10 * 45 ** (k / 50) for k in range(51)]
-    axis.fill_between(y, [0.95 * law(v) for v in y], [1.05 * law(v) for v in y], color="0.9", label="law of the wall ± 5 %")
+    axis.fill_between(
+        y, [0.95 * law(v) for v in y], [1.05 * law(v) for v in y], color="0.9", label="law of the wall ± 5 %"
+    )
     axis.semilogx(y, [law(v) for v in y], "k-", lw=1)
     axis.set(xlabel="y+", ylabel="U+")
     axis.legend(fontsize=7, loc="lower right")

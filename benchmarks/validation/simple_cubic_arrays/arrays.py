@@ -30,8 +30,9 @@ def gravity(size, viscosity):
 
 
 def overrides(fraction, cells, place, tau=1.0):
-    """Diameter (cells), duration (s) and options of a run in a box of `cells`: one sphere at a solid fraction of 0.027, eight at
-    others, where the box of a single one would be too narrow. place: random.Random, for the position relative to the cells."""
+    """Diameter (cells), duration (s) and options of a run in a box of `cells`: one sphere at a solid fraction of 0.027,
+    eight at others, where the box of a single one would be too narrow. place: random.Random, for the position relative
+    to the cells."""
     size, spheres = cells * SPACING, 1 if fraction < 0.1 else 2
     pitch, viscosity = size / spheres, viscosity_of(tau)
     # Touching spheres, at pi/6, must not overlap in the last digit.

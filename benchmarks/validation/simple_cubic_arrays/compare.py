@@ -2,8 +2,8 @@
 """Compares the drag on simple cubic arrays with Zick and Homsy: compare.py DRAG_CSV... [--figure FILE]
 
 Takes the tables that run.py writes, prints for every link rule, solid fraction and diameter the mean drag over the
-positions relative to the cells, the reference, the difference, the spread over the positions, and pass or fail (5 % at ten or more
-cells per diameter), and draws the convergence. Exit code 0 if all pass.
+positions relative to the cells, the reference, the difference, the spread over the positions, and pass or fail (5 % at
+ten or more cells per diameter), and draws the convergence. Exit code 0 if all pass.
 """
 import argparse
 import sys
@@ -42,9 +42,11 @@ def main():
             good = diameter < FROM_CELLS or abs(error) <= ACCEPTED
             passed = passed and good
             points.append((diameter, 100.0 * abs(error)))
-            print(f"{links}, solid fraction {fraction}, {diameter:.1f} cells: drag {exact * (1 + error):.3f}, reference {exact}, "
-                  f"difference {100 * error:+.2f} %, {len(values)} places {100 * spread:.2f} % apart: "
-                  f"{'pass' if good else 'FAIL'}")
+            print(
+                f"{links}, solid fraction {fraction}, {diameter:.1f} cells: drag {exact * (1 + error):.3f}, reference"
+                f" {exact}, difference {100 * error:+.2f} %, {len(values)} places {100 * spread:.2f} % apart:"
+                f" {'pass' if good else 'FAIL'}"
+            )
         plt.loglog(*zip(*points), "o-", label=f"{links}, {fraction}")
     plt.loglog([6, 20], [6, 6 * 6 / 20], "k:", label="first order")
     plt.loglog([6, 20], [6, 6 * (6 / 20) ** 2], "k--", label="second order")

@@ -2,8 +2,9 @@
 """Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
 
 Runs arrays of five solid fractions, up to that of touching spheres, with both link rules and several relaxation times,
-each with the spheres at a few positions relative to the cells. Appends a line per run to OUTPUT_FOLDER/dense.csv, skips runs
-that are there already, and prints the mean difference from Zick and Homsy for each. Exit code 0 if `cli` with trt is within 3 %.
+each with the spheres at a few positions relative to the cells. Appends a line per run to OUTPUT_FOLDER/dense.csv, skips
+runs that are there already, and prints the mean difference from Zick and Homsy for each. Exit code 0 if `cli` with trt
+is within 3 %.
 """
 import argparse
 import random
@@ -14,7 +15,9 @@ from arrays import overrides, reference_drags, run_array
 
 from thalweg.tables import read_rows
 
-CELLS = {0.125: 32, 0.216: 27, 0.343: 23, 0.45: 21, 0.5236: 20}  # of the box, two spheres wide: 9.9 to 10.05 per diameter
+CELLS = {
+    0.125: 32, 0.216: 27, 0.343: 23, 0.45: 21, 0.5236: 20,
+}  # of the box, two spheres wide: 9.9 to 10.05 per diameter
 PLACES, ACCEPTED = 3, 0.03
 HEADINGS = ["links", "collision", "tau", "solid_fraction [1]", "diameter [cells]", "place", "drag [1]"]
 
@@ -53,8 +56,10 @@ def report(table):
         if (links, collision) == ("cli", "trt"):
             good = abs(error) <= ACCEPTED
             passed, verdict = passed and good, ": pass" if good else ": FAIL"
-        print(f"{links} {collision}, tau {tau}, solid fraction {fraction}: {100 * error:+.1f} %, places {100 * spread:.1f} % "
-              f"apart{verdict}")
+        print(
+            f"{links} {collision}, tau {tau}, solid fraction {fraction}: {100 * error:+.1f} %, places"
+            f" {100 * spread:.1f} % apart{verdict}"
+        )
     return passed
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs the arrays of both solid fractions at all resolutions: run.py THALWEG OUTPUT_FOLDER [LINKS...]
 
-LINKS: kinds of coupling.links, bouzidi if none is given. Every array is run with the spheres at a few positions relative
-to the cells. Appends one line per run to OUTPUT_FOLDER/drag.csv, which compare.py reads.
+LINKS: kinds of coupling.links, bouzidi if none is given. Every array is run with the spheres at a few positions
+relative to the cells. Appends one line per run to OUTPUT_FOLDER/drag.csv, which compare.py reads.
 """
 import random
 import sys

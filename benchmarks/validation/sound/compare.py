@@ -4,8 +4,8 @@ The column released from rest:          compare.py column RUN_FOLDER... [--figur
 
 waves: speed and damping of standing waves measured by bin/sound, against s^2 + s k^2 [4/3 nu/(1 + s (tau - 1/2)) +
 zeta/(1 + s (tau_b - 1/2))] + k^2/3 = 0, zeta = 2/9 (tau_b - 1/2). Prints the largest differences for each collision.
-column: mean velocity of the grains over Stokes' with Schiller and Naumann's correction, against time. Prints its largest
-value and its oscillation about the mean over one period of sound, in four parts of the run.
+column: mean velocity of the grains over Stokes' with Schiller and Naumann's correction, against time. Prints its
+largest value and its oscillation about the mean over one period of sound, in four parts of the run.
 """
 import argparse
 import sys

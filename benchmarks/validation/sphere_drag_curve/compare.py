@@ -71,9 +71,11 @@ def report(rows):
         if float(row["cells [1]"]) >= BOUND_FROM:
             good = abs(difference) <= ACCEPTED
             passed, verdict = passed and good, ": pass" if good else ": FAIL"
-        print(f"{row['run']}: {row['kind']}, {row['cells [1]']} cells, Re {reynolds:.0f}: drag coefficient {drag:.3f} +- "
-              f"{error:.3f} ({float(row['independent [1]']):.0f} independent values, over {row['averaged [d]']} d), standard "
-              f"{standard_drag(reynolds):.3f}, {100 * difference:+.1f} %{verdict}")
+        print(
+            f"{row['run']}: {row['kind']}, {row['cells [1]']} cells, Re {reynolds:.0f}: drag coefficient {drag:.3f} +-"
+            f" {error:.3f} ({float(row['independent [1]']):.0f} independent values, over {row['averaged [d]']} d),"
+            f" standard {standard_drag(reynolds):.3f}, {100 * difference:+.1f} %{verdict}"
+        )
     return passed
 
 

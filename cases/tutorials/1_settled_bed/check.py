@@ -17,7 +17,9 @@ def check(checks, between_walls, without_walls):
         checks.finished(run)
         bed = run.summary["bed"]
         checks.expect("  largest overlap", run.summary["figures"]["largest_overlap"], 0.0, 0.002, "diameters")
-        checks.expect("  grains that still roll", run.summary["figures"]["restless_grains"], 0, 4)   # 2 % of the larger bed
+        checks.expect(
+            "  grains that still roll", run.summary["figures"]["restless_grains"], 0, 4
+        )  # 2 % of the larger bed
         checks.expect("  solid fraction", 1.0 - bed["porosity"], low, high)
         print(f"  height of the bed: {bed['bed_height'] / run.diameter:.2f} diameters")
 

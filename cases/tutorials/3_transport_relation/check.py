@@ -33,8 +33,10 @@ def check(checks, folder):
         checks.expect("  over that", rate / between(tau, WHOLE_FLUME), 0.5, 2.0)
     tau, rate = FLUME_POINTS[0][:2]
     power = np.log(rates[1] / rates[0]) / np.log(shields[1] / shields[0])
-    checks.compare(f"q* at {tau}, by the power {power:.1f} of the lowest two", rates[0] * (tau / shields[0])**power, rate,
-                   "Zhang et al.")
+    checks.compare(
+        f"q* at {tau}, by the power {power:.1f} of the lowest two", rates[0] * (tau / shields[0]) ** power, rate,
+        "Zhang et al.",
+    )
     checks.expect("growth of q* from the lowest to the highest slope", rates[-1] / rates[0], 3.0, 12.0)
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Compares the water over the rough bed of tutorial 5 with direct numerical simulations, and its stresses with its weight."""
+"""Compares the water over the rough bed of tutorial 5 with direct numerical simulations, and its stresses with its
+weight."""
 import sys
 from pathlib import Path
 
@@ -40,12 +41,18 @@ def check(checks, folder, figure):
     reference = roughness_of(SPHERE_CHANNEL_MEAN, flow.depth)
     checks.expect("largest difference of the total stress from the driving stress",
                   abs(run.result("stress_balance", "largest_difference")), 0.0, 0.06, "bed stresses")
-    checks.expect("mean velocity of the water", flow.bulk_velocity, 0.92 * SPHERE_CHANNEL_MEAN, 1.08 * SPHERE_CHANNEL_MEAN, "u*")
-    checks.compare("mean velocity of the water in u*", flow.bulk_velocity, SPHERE_CHANNEL_MEAN, "Mazzuoli and Uhlmann (2017)")
+    checks.expect(
+        "mean velocity of the water", flow.bulk_velocity, 0.92 * SPHERE_CHANNEL_MEAN, 1.08 * SPHERE_CHANNEL_MEAN, "u*"
+    )
+    checks.compare(
+        "mean velocity of the water in u*", flow.bulk_velocity, SPHERE_CHANNEL_MEAN, "Mazzuoli and Uhlmann (2017)"
+    )
     print(f"  its statistical error: {flow.bulk_error:.2f} u*")
     checks.expect("von Karman's number, fitted", karman, 0.30, 0.50)
     checks.compare("von Karman's number, fitted", karman, VON_KARMAN, "usual")
-    checks.compare("equivalent sand roughness in diameters", flow.roughness, reference, "of a logarithmic profile with that mean")
+    checks.compare(
+        "equivalent sand roughness in diameters", flow.roughness, reference, "of a logarithmic profile with that mean"
+    )
     if figure:
         draw(run, flow, reference, figure)
 

@@ -41,8 +41,8 @@ def surface_of(run, frame, x, y):
 
 
 def depths_of(run):
-    """Times, and how far (m) the deepest eighth of a ring of a diameter round the pier is below the bed away from it, as mean
-    of five frames."""
+    """Times, and how far (m) the deepest eighth of a ring of a diameter round the pier is below the bed away from it,
+    as mean of five frames."""
     x, y, distance = grid_of(run)
     ring, away = (distance > RADIUS) & (distance < RADIUS + 5e-3), distance > 2.5 * RADIUS
     sector = np.floor((np.arctan2(y[:, None] - PIER[1], x[None, :] - PIER[0]) / np.pi + 1.0) * 4.0)
@@ -56,7 +56,8 @@ def depths_of(run):
 
 
 def flow_in_front(run):
-    """Times, the downward velocity (m/s) at the upstream face of the pier, and the backward velocity in front of its foot."""
+    """Times, the downward velocity (m/s) at the upstream face of the pier, and the backward velocity in front of its
+    foot."""
     times, down, back = [], [], []
     for frame in run.fluid:
         velocity, water = frame.arrays["velocity"][:, 0].astype(float), frame.arrays["grain_id"][:, 0] == -1
@@ -75,8 +76,10 @@ def draw(run, depths, flow, path):
     figure, (plan, graph) = plt.subplots(1, 2, figsize=(10.5, 3.6), layout="constrained")
     x, y, distance = grid_of(run)
     heights = np.mean([surface_of(run, frame, x, y) for frame in list(run.grains)[-10:]], axis=0)
-    image = plan.imshow(np.ma.masked_where(distance < RADIUS, 1e3 * heights), origin="lower", cmap="terrain", vmin=8, vmax=30,
-                        extent=(0, 1e3 * run.size[0], 0, 1e3 * run.size[1]))
+    image = plan.imshow(
+        np.ma.masked_where(distance < RADIUS, 1e3 * heights), origin="lower", cmap="terrain", vmin=8, vmax=30,
+        extent=(0, 1e3 * run.size[0], 0, 1e3 * run.size[1]),
+    )
     plan.add_patch(plt.Circle(1e3 * PIER, 1e3 * RADIUS, color="0.4"))
     plan.set(xlabel="x [mm], flow to the right", ylabel="y [mm]", title="height of the bed [mm], last 0.4 s")
     figure.colorbar(image, ax=plan, shrink=0.8)
@@ -99,7 +102,10 @@ def check(checks, folder, figure):
     moving = flow[0] > 0.5
     checks.expect("hole at the start", 1e3 * depths[1][first].mean(), 0.0, 5.0, "mm")
     checks.expect("hole over the last half second", 1e3 * depths[1][last].mean(), 5.0, 11.0, "mm")
-    checks.compare("the same in diameters of the pier", depths[1][last].mean() / (2 * RADIUS), 1.3, "equilibrium after days: Melville and Sutherland")
+    checks.compare(
+        "the same in diameters of the pier", depths[1][last].mean() / (2 * RADIUS), 1.3,
+        "equilibrium after days: Melville and Sutherland",
+    )
     checks.expect("water down the face", 1e2 * flow[1][moving].mean(), 4.0, 12.0, "cm/s")
     checks.expect("water back in front of the foot", 1e2 * flow[2][moving].mean(), 3.0, 15.0, "cm/s")
     if figure:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes pier.stl: an upright cylinder of 12.5 mm, 30 mm behind the upstream end of the box, in its middle. In metres."""
+"""Writes pier.stl: an upright cylinder of 12.5 mm, 30 mm behind the upstream end of the box, in its middle. In
+metres."""
 import math
 import sys
 from pathlib import Path
@@ -13,7 +14,10 @@ RADIUS, LOW, HIGH, X, Y, FACETS = 6.25e-3, -2e-3, 55e-3, 30e-3, 25e-3, 48
 
 
 def main():
-    rim = [(X + RADIUS * math.cos(2 * math.pi * k / FACETS), Y + RADIUS * math.sin(2 * math.pi * k / FACETS)) for k in range(FACETS)]
+    rim = [
+        (X + RADIUS * math.cos(2 * math.pi * k / FACETS), Y + RADIUS * math.sin(2 * math.pi * k / FACETS))
+        for k in range(FACETS)
+    ]
     triangles = []
     for k in range(FACETS):
         one, other = rim[k - 1], rim[k]

@@ -1,8 +1,9 @@
 """q* against the Shields number, as fig. 3(a) of Zhang et al. (2022).
 
-Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the given
-runs, whose means, standard errors (bars) and verdicts are those of run.log unless times are given. The Shields number of a
-run is that of its slope and its measured surface. Open symbols: not steady, or too short to tell. Prints the table.
+Draws their printed points (bars: standard deviation of q* over the last 10 s), relations of the literature and the
+given runs, whose means, standard errors (bars) and verdicts are those of run.log unless times are given. The Shields
+number of a run is that of its slope and its measured surface. Open symbols: not steady, or too short to tell. Prints
+the table.
 """
 import sys
 
@@ -61,24 +62,30 @@ def draw_paper(axes):
 
 
 def row_of(folder, shields, rate, steady, height):
-    return {"run": folder.name, "Shields number [1]": f"{shields:.4f}", "bed [d]": f"{height:.2f}",
-            "q_star [1]": f"{rate.mean:.4f}", "error [1]": f"{rate.error:.4f}", "deviation [1]": f"{rate.deviation:.4f}",
-            "steady": VERDICTS[steady]}
+    return {
+        "run": folder.name, "Shields number [1]": f"{shields:.4f}", "bed [d]": f"{height:.2f}",
+        "q_star [1]": f"{rate.mean:.4f}", "error [1]": f"{rate.error:.4f}", "deviation [1]": f"{rate.deviation:.4f}",
+        "steady": VERDICTS[steady],
+    }
 
 
 def draw_runs(axes, rows):
     for n, row in enumerate(rows):
         shields, rate, error = (float(row[name]) for name in ("Shields number [1]", "q_star [1]", "error [1]"))
-        axes.errorbar(shields, max(rate, SMALLEST), error, fmt="osD^v"[n // 10 % 5], color=f"C{n % 10}", ms=7, capsize=3,
-                      mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"])
+        axes.errorbar(
+            shields, max(rate, SMALLEST), error, fmt="osD^v"[n // 10 % 5], color=f"C{n % 10}", ms=7, capsize=3,
+            mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"],
+        )
 
 
 def print_table(folders, found):
     print("| run | Shields number | bed [d] | q* | error | deviation | independent values | steady |")
     print("|---|---|---|---|---|---|---|---|")
     for folder, (shields, rate, steady, height) in zip(folders, found):
-        print(f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} | {rate.deviation:.4f} | "
-              f"{rate.independent:.0f} | {VERDICTS[steady]} |")
+        print(
+            f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} |"
+            f" {rate.deviation:.4f} | {rate.independent:.0f} | {VERDICTS[steady]} |"
+        )
 
 
 def below_the_axis(rows):
@@ -106,7 +113,8 @@ def figure_of(rows):
 
 
 def draw(folders, start, stop, surface, table):
-    """The figure of these runs, after the printed table; start, stop: of the means, s, or None; table: a file, or None."""
+    """The figure of these runs, after the printed table; start, stop: of the means, s, or None; table: a file, or
+    None."""
     found = [measure(folder, start, stop, surface) for folder in folders]
     if found:
         print_table(folders, found)

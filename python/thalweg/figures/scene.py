@@ -1,8 +1,8 @@
 """A picture of a run in three dimensions: the grains by radius, coloured by speed, in front of a slice of the flow.
 
-It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist, and solids. The
-slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a display of its own
-(Xvfb), so this also works where there is no screen.
+It draws the stored frames of grains and fluid (output.grains and output.fluid in the case), whichever exist, and
+solids. The slice is that through the middle of the box, drawn at its far side, where it hides no grain. VTK draws on a
+display of its own (Xvfb), so this also works where there is no screen.
 """
 import contextlib
 import os
@@ -238,7 +238,8 @@ def write_picture(run, grains, fluid, path, direction, pixels):
 
 
 def draw(run, path, time, direction, pixels):
-    """Writes a .png of the frames nearest to a time (s; None: the last). direction: from which to look; pixels: width and height."""
+    """Writes a .png of the frames nearest to a time (s; None: the last). direction: from which to look; pixels: width
+    and height."""
     grains, fluid = pictured(run, time)
     path.parent.mkdir(parents=True, exist_ok=True)
     with display():

@@ -1,8 +1,8 @@
 """A resolved bed beside the two-phase continuum, as figs. 8, 10(b) and 11 of Zhang et al. (2022).
 
-Draws solid fraction, velocities and stresses over the height, the creep below the surface, the stress ratio and the solid fraction of
-every sheared layer over its mixed inertial number, and the drag of the layers beside the law of Beetstra et al. (2007). Prints q*, the
-Shields numbers and the lengths of the creep.
+Draws solid fraction, velocities and stresses over the height, the creep below the surface, the stress ratio and the
+solid fraction of every sheared layer over its mixed inertial number, and the drag of the layers beside the law of
+Beetstra et al. (2007). Prints q*, the Shields numbers and the lengths of the creep.
 """
 import math
 import sys
@@ -33,12 +33,15 @@ def report(run, column):
         print(f"thalweg: the two runs differ: {different}.", file=sys.stderr)
     of = column.profiles["continuum"]
     if "creep_velocity" in of:
-        print(f"creep of the continuum: e-fold {two_phases.decay_length(-of['creep_depth'] / column.diameter, of['creep_velocity']):.2f} d")
+        print(
+            "creep of the continuum: e-fold"
+            f" {two_phases.decay_length(-of['creep_depth'] / column.diameter, of['creep_velocity']):.2f} d"
+        )
 
 
 def draw(folder, continuum=None):
-    """folder: of a resolved run with analysis.stress_balance; continuum: of a run of cases/continuum/creep.yaml with the same slope,
-    grains, fluid and Shields number."""
+    """folder: of a resolved run with analysis.stress_balance; continuum: of a run of cases/continuum/creep.yaml with
+    the same slope, grains, fluid and Shields number."""
     run, column = Run(folder), Run(continuum) if continuum else None
     if column is not None and "continuum" not in column.profiles:
         raise RunFolderError(f"{continuum}: not a run with system: continuum.")

@@ -1,7 +1,7 @@
 """Profiles of the grains a camera sees, as fig. 5(e, f) of Zhang et al. (2022).
 
-Areal fraction, velocity along x and temperature over the height from the surface of static pixels; thalweg.side_view and
-thalweg.visible_profiles say what is visible, what is static, and what the temperature is.
+Areal fraction, velocity along x and temperature over the height from the surface of static pixels; thalweg.side_view
+and thalweg.visible_profiles say what is visible, what is static, and what the temperature is.
 """
 import matplotlib.pyplot as plt
 import numpy as np

@@ -5,9 +5,13 @@ import numpy as np
 from thalweg.height_profiles import GRID
 
 # Columns of series.csv and what they are called, in the order in which they count.
-COURSE = {"moving_grains": "moving grains [1]", "largest_grain_speed": "largest grain speed [m/s]", "grain_kinetic_energy": "kinetic energy of the grains [J]",
-          "contacts": "contacts [1]", "mean_velocity_x": "mean velocity of the fluid [m/s]", "largest_fluid_speed": "largest fluid speed [m/s]",
-          "bed_stress": "stress on the bed [Pa]", "surface_height": "height of the bed [m]", "largest_overlap": "largest overlap"}
+COURSE = {
+    "moving_grains": "moving grains [1]", "largest_grain_speed": "largest grain speed [m/s]",
+    "grain_kinetic_energy": "kinetic energy of the grains [J]", "contacts": "contacts [1]",
+    "mean_velocity_x": "mean velocity of the fluid [m/s]", "largest_fluid_speed": "largest fluid speed [m/s]",
+    "bed_stress": "stress on the bed [Pa]", "surface_height": "height of the bed [m]",
+    "largest_overlap": "largest overlap",
+}
 MOST = 4   # panels
 
 
@@ -16,12 +20,18 @@ def series_figure(run):
     series = run.series
     if len(series["time"]) < 2:
         return None
-    names = [name for name in COURSE if name in series and np.isfinite(series[name]).sum() > 1 and np.nanmax(np.abs(series[name])) > 0.0][:MOST]
+    names = [
+        name
+        for name in COURSE
+        if name in series and np.isfinite(series[name]).sum() > 1 and np.nanmax(np.abs(series[name])) > 0.0
+    ][:MOST]
     if not names:
         return None
     rows = (len(names) + 1) // 2
-    figure, panels = plt.subplots(rows, min(2, len(names)), figsize=(9.0 if len(names) > 1 else 5.0, 2.3 * rows), squeeze=False, sharex=True,
-                                  layout="constrained")
+    figure, panels = plt.subplots(
+        rows, min(2, len(names)), figsize=(9.0 if len(names) > 1 else 5.0, 2.3 * rows), squeeze=False, sharex=True,
+        layout="constrained",
+    )
     for axes in panels.flat[len(names):]:
         axes.remove()
     for axes, name in zip(panels.flat, names):
@@ -45,9 +55,12 @@ def column_figure(run):
     for name, label, colour in (("grain_velocity", "grains", "#c0392b"), ("fluid_velocity", "fluid", "#14496e")):
         middle.plot(column[name][:, 0], z, color=colour, label=label)
     middle.set(xlabel="velocity along x [m/s]")
-    for name, label, style in (("grain_shear_stress", "grains", {"color": "#c0392b"}), ("fluid_shear_stress", "fluid", {"color": "#14496e"}),
-                               ("total_stress", "total", {"color": "k", "lw": 2.0}),
-                               ("driving_stress", "driving", {"color": "#e08e79", "ls": "--"})):
+    for name, label, style in (
+        ("grain_shear_stress", "grains", {"color": "#c0392b"}),
+        ("fluid_shear_stress", "fluid", {"color": "#14496e"}),
+        ("total_stress", "total", {"color": "k", "lw": 2.0}),
+        ("driving_stress", "driving", {"color": "#e08e79", "ls": "--"}),
+    ):
         right.plot(column[name], z, label=label, **style)
     right.set(xlabel="shear stress [Pa]")
     for axes in (left, middle, right):

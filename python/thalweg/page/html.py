@@ -38,7 +38,9 @@ footer { margin-top: 3rem; font-size: .85rem; color: #4d5c66; }
 def table(rows, head=None, numbers=()):
     """rows: of texts, or of Raw; numbers: columns that stand to the right."""
     def cells(row, tag):
-        return "".join(f"<{tag}{' class=number' if n in numbers else ''}>{piece(cell)}</{tag}>" for n, cell in enumerate(row))
+        return "".join(
+            f"<{tag}{' class=number' if n in numbers else ''}>{piece(cell)}</{tag}>" for n, cell in enumerate(row)
+        )
     lines = ([f"<thead><tr>{cells(head, 'th')}</tr></thead>"] if head else []) + ["<tbody>"]
     lines += [f"<tr>{cells(row, 'td')}</tr>" for row in rows]
     return "<table>" + "\n".join(lines) + "</tbody></table>"
@@ -87,5 +89,8 @@ def section(title, *parts):
 
 
 def document(title, body):
-    return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width">\n'
-            f"<title>{escape(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n")
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport"'
+        ' content="width=device-width">\n'
+        f'<title>{escape(title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n'
+    )

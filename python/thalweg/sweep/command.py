@@ -22,17 +22,28 @@ STOPPED = 3   # exit code of thalweg run
 
 def add_to(commands):
     sweep = commands.add_parser(
-        "sweep", description="Run a case with many values of its keys, as many runs at a time as there are cores and memory for. The same "
-                             "command goes on where it was stopped or killed; finished runs are not repeated.")
+        "sweep",
+        description=(
+            "Run a case with many values of its keys, as many runs at a time as there are cores and memory for. The"
+            " same command goes on where it was stopped or killed; finished runs are not repeated."
+        ),
+    )
     sweep.add_argument("sweep", type=Path, metavar="SWEEP.yaml", help="Which runs there are (docs/sweep.md)")
     sweep.add_argument("--out", type=Path, metavar="FOLDER",
                        help="Where runs and tables go (default: named after the file, beside it)")
-    sweep.add_argument("--jobs", type=int, metavar="N", help="Runs at a time (default: a core a rank, as far as the memory goes)")
+    sweep.add_argument(
+        "--jobs", type=int, metavar="N", help="Runs at a time (default: a core a rank, as far as the memory goes)"
+    )
     sweep.add_argument("--retry", action="store_true", help="Run those again that have failed")
-    sweep.add_argument("--dry-run", action="store_true", help="Print the runs, or the bisections, and what thalweg check warns of, and stop")
+    sweep.add_argument(
+        "--dry-run", action="store_true",
+        help="Print the runs, or the bisections, and what thalweg check warns of, and stop",
+    )
     sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, from 0 on")
     sweep.add_argument("--tables", action="store_true", help="Only write the tables of what there is")
-    sweep.add_argument("--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection")
+    sweep.add_argument(
+        "--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection"
+    )
 
 
 def program():
@@ -55,13 +66,15 @@ def asked(command):
 
 
 def refuse_impossible(plan, tasks):
-    """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that run's. Returns
-    the memory that a run takes, the most of those looked at, in bytes."""
+    """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that
+    run's. Returns the memory that a run takes, the most of those looked at, in bytes."""
     ends = [settings for task in (tasks[:1] + tasks[1:][-1:]) for settings in task.ends()]
     said = [asked(check_command(program(), plan.case, settings)) for settings in ends]
     # A bisection chooses its runs as it goes on.
     if said and not plan.bisections and all(check.returncode == 2 for check in said):
-        raise SweepError(f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}")
+        raise SweepError(
+            f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}"
+        )
     return max((memory_needed(check.stdout) for check in said), default=0.0)
 
 
@@ -82,8 +95,8 @@ def list_tasks(plan, tasks):
 
 
 def slurm_job(wanted, count, ranks, folder):
-    """An array of `count` tasks, each with as many runs at a time as --jobs says, of `ranks` ranks. A task whose time is nearly up
-    stops its runs and puts itself back into the queue; one that is cancelled does not."""
+    """An array of `count` tasks, each with as many runs at a time as --jobs says, of `ranks` ranks. A task whose time
+    is nearly up stops its runs and puts itself back into the queue; one that is cancelled does not."""
     jobs = wanted.jobs or 1
     file, out, command = (shlex.quote(str(path)) for path in (wanted.sweep.resolve(), folder.resolve(), program()))
     return f"""#!/usr/bin/env bash
@@ -111,14 +124,17 @@ exit $status
 
 
 def sweep(wanted):
-    """Exit code 0: all done; 1: some runs have failed; 3: stopped in good order, as thalweg run says; 2 comes with a SweepError."""
+    """Exit code 0: all done; 1: some runs have failed; 3: stopped in good order, as thalweg run says; 2 comes with a
+    SweepError."""
     plan = read_plan(wanted.sweep)
     folder = wanted.out or wanted.sweep.with_suffix("")
     if wanted.jobs is not None and wanted.jobs < 1:
         raise SweepError(f"--jobs {wanted.jobs}: give at least one run at a time.")
     names = [name_of(point, plan.naming_keys) for point in plan.points]
     if len(set(names)) < len(names):
-        raise SweepError(f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice.")
+        raise SweepError(
+            f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice."
+        )
     tasks = tasks_of(plan, folder)
     if wanted.slurm:
         print(slurm_job(wanted, len(tasks), plan.ranks, folder), end="")
@@ -152,15 +168,22 @@ def written(plan, tasks, units, folder):
     print(f"written {', '.join(str(file) for file in files)}")
     versions = sorted({run.version for run in runs if run.state == DONE})
     if len(versions) > 1:
-        print(f"thalweg: the runs were made by several versions of the program (column version of runs.csv): {', '.join(versions)}.",
-              file=sys.stderr)
+        print(
+            (
+                "thalweg: the runs were made by several versions of the program (column version of runs.csv):"
+                f" {', '.join(versions)}."
+            ), file=sys.stderr,
+        )
     done = [run.summary for run in runs if run.state == DONE]
     for column in plan.columns:
         if done and all(figure_of(summary, column) is None for summary in done):
             print(f"thalweg: columns: no run has the number {column} in its summary.json.", file=sys.stderr)
     failed = [run for run in runs if run.state == FAILED]
     if failed:
-        print(f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs those again that have "
-              "not ended).",
-              file=sys.stderr)
+        print(
+            (
+                f"thalweg: {len(failed)} of the runs have failed (column failure of runs.csv; --retry runs those again"
+                " that have not ended)."
+            ), file=sys.stderr,
+        )
     return 1 if failed else 0

@@ -1,5 +1,5 @@
-"""What a run begins from: its case, the values it sets, and the files that those refer to. Runs of a sweep that began from
-different things do not belong in one table."""
+"""What a run begins from: its case, the values it sets, and the files that those refer to. Runs of a sweep that began
+from different things do not belong in one table."""
 import functools
 import hashlib
 import json
@@ -28,8 +28,8 @@ def inputs_of(case, settings):
 
 
 def named_files(content, key=""):
-    """All texts that stand at a key for a file or folder, or in a list of them. key: with the keys around it, joined by dots, as
-    those of settings are."""
+    """All texts that stand at a key for a file or folder, or in a list of them. key: with the keys around it, joined by
+    dots, as those of settings are."""
     if isinstance(content, dict):
         return {name for inner, value in content.items() for name in named_files(value, f"{key}.{inner}")}
     if isinstance(content, list):
@@ -72,8 +72,13 @@ def digest_of_file(path):
 
 
 def latest_checkpoint_in(run):
-    """As the program chooses it (io/folder/run_folder.hpp): the one that `latest` names, else that of the last step; None: there is none."""
-    steps = {int(match[1]): file for file in run.glob("checkpoints/step_*.h5") if (match := re.fullmatch(r"step_(\d+)\.h5", file.name))}
+    """As the program chooses it (io/folder/run_folder.hpp): the one that `latest` names, else that of the last step;
+    None: there is none."""
+    steps = {
+        int(match[1]): file
+        for file in run.glob("checkpoints/step_*.h5")
+        if (match := re.fullmatch(r"step_(\d+)\.h5", file.name))
+    }
     try:
         named = run / "checkpoints" / (run / "checkpoints/latest").read_text(encoding="utf-8").strip()
     except OSError:
@@ -83,7 +88,8 @@ def latest_checkpoint_in(run):
 
 @functools.lru_cache(maxsize=None)
 def digest_of_checkpoint(path, state):
-    """By the checksums that it holds of its data, which need not be read: it may be as large as the memory of many nodes."""
+    """By the checksums that it holds of its data, which need not be read: it may be as large as the memory of many
+    nodes."""
     seen = []
 
     def look(name, item):

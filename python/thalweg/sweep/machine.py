@@ -1,5 +1,5 @@
-"""How many runs fit on this machine at a time. What there is comes from the program that has started this one, which knows the
-scheduler's set of cores and the limits of container and job (driver/cli/python_command.cpp)."""
+"""How many runs fit on this machine at a time. What there is comes from the program that has started this one, which
+knows the scheduler's set of cores and the limits of container and job (driver/cli/python_command.cpp)."""
 import json
 import os
 
@@ -10,7 +10,9 @@ def told(name):
     try:
         return float(os.environ[name])
     except (KeyError, ValueError):
-        raise SweepError(f"{name} does not say what this machine has; start this as `thalweg sweep`, or give --jobs.") from None
+        raise SweepError(
+            f"{name} does not say what this machine has; start this as `thalweg sweep`, or give --jobs."
+        ) from None
 
 
 def cores():
@@ -32,6 +34,11 @@ def runs_at_a_time(ranks, needed):
     there = told("THALWEG_MEMORY")
     by_memory = max(1, int(there // needed)) if needed > 0.0 else by_cores
     if by_memory < by_cores:
-        print(f"{by_memory} run{'s' if by_memory > 1 else ''} at a time, though there are cores for {by_cores}: each takes about "
-              f"{needed / 1e9:.3g} GB of memory, and {there / 1e9:.3g} GB are free (--jobs overrides this)", flush=True)
+        print(
+            (
+                f"{by_memory} run{'s' if by_memory > 1 else ''} at a time, though there are cores for {by_cores}: each"
+                f" takes about {needed / 1e9:.3g} GB of memory, and {there / 1e9:.3g} GB are free (--jobs overrides"
+                " this)"
+            ), flush=True,
+        )
     return min(by_cores, by_memory)

@@ -21,7 +21,8 @@ ROUNDING = 1e-9   # relative: a time is a number of steps, and 1050 steps of 7e-
 
 @dataclass(frozen=True)
 class Condition:
-    """Whether a run shows what is looked for: a figure of its summary.json, compared with a number or another figure."""
+    """Whether a run shows what is looked for: a figure of its summary.json, compared with a number or another
+    figure."""
     figure: str
     sign: str
     limit: float | str
@@ -81,8 +82,8 @@ class Bisection:
 
 @dataclass
 class Plan:
-    """points: the settings (key: value) of each combination, without those of a bisection; bisections: that of each point,
-    or none at all."""
+    """points: the settings (key: value) of each combination, without those of a bisection; bisections: that of each
+    point, or none at all."""
     case: Path
     points: list
     bisections: list = field(default_factory=list)
@@ -98,7 +99,8 @@ class Plan:
         return "grain" in given + [point.get("model_fluid.units") for point in self.points]
 
     def lacks(self, summary):
-        """What a bisection looks for and the summary of a finished run does not have, in a sentence; None if it is there."""
+        """What a bisection looks for and the summary of a finished run does not have, in a sentence; None if it is
+        there."""
         try:
             for search in self.bisections[:1]:   # the condition is that of all
                 search.condition.holds(summary)
@@ -173,12 +175,15 @@ def points_of(content):
 
 def keys_in(content):
     """Also those with a single value, so that names and columns stay when values are added."""
-    together = dict.fromkeys(key for entry in content.get("together") or [] for key in entry if not key.startswith("bisect."))
+    together = dict.fromkeys(
+        key for entry in content.get("together") or [] for key in entry if not key.startswith("bisect.")
+    )
     return list(section(content, "vary")) + list(together)
 
 
 def naming_keys_in(content):
-    """The first key of an entry of `together` stands for the entry, if it is the same key with another value in each."""
+    """The first key of an entry of `together` stands for the entry, if it is the same key with another value in
+    each."""
     entries = [{key: value for key, value in entry.items() if not key.startswith("bisect.")}
                for entry in content.get("together") or []]
     first = [item for entry in entries for item in list(entry.items())[:1]]
@@ -189,7 +194,9 @@ def naming_keys_in(content):
 
 def bisections_of(content, points):
     """That of each point, whose own bisect.from and bisect.to are taken out of it; none if nothing is searched."""
-    ranges = [{end: point.pop(f"bisect.{end}") for end in ("from", "to") if f"bisect.{end}" in point} for point in points]
+    ranges = [
+        {end: point.pop(f"bisect.{end}") for end in ("from", "to") if f"bisect.{end}" in point} for point in points
+    ]
     if not content.get("bisect"):
         if any(ranges):
             raise SweepError("bisect.from and bisect.to of a run take a section bisect, which says what is searched.")
@@ -221,7 +228,9 @@ def bisection_of(given):
     repeat = [[{key: value} for value in values_of(key, values)] for key, values in section(given, "repeat").items()]
     repetitions = tuple({key: value for settings in combination for key, value in settings.items()}
                         for combination in itertools.product(*repeat))
-    return Bisection(str(given["key"]), lower, upper, width, geometric, Condition.of(given["holds"]), repetitions, share)
+    return Bisection(
+        str(given["key"]), lower, upper, width, geometric, Condition.of(given["holds"]), repetitions, share
+    )
 
 
 def values_of(key, given):
@@ -242,7 +251,9 @@ def values_of(key, given):
         raise SweepError(f"{key}: a range with spacing: log takes a count.")
     else:
         values = stepped(key, start, stop, given)
-    whole = all(isinstance(given.get(name, 1), int) for name in ("from", "to", "step")) and all(v.is_integer() for v in values)
+    whole = all(isinstance(given.get(name, 1), int) for name in ("from", "to", "step")) and all(
+        v.is_integer() for v in values
+    )
     return [int(value) if whole else value for value in values]
 
 

@@ -12,11 +12,13 @@ SECONDS_BETWEEN_LINES = 5.0
 
 
 class Runner:
-    """plan, tasks: of the sweep; units: of the case's keys; jobs: runs at a time; tables: whether to write them, which is not
-    for one of several sweeps that share a folder."""
+    """plan, tasks: of the sweep; units: of the case's keys; jobs: runs at a time; tables: whether to write them, which
+    is not for one of several sweeps that share a folder."""
 
     def __init__(self, plan, tasks, units, program, folder, jobs, retry=False, tables=True):
-        self.plan, self.tasks, self.units, self.program, self.folder, self.tables = plan, tasks, units, program, folder, tables
+        self.plan, self.tasks, self.units, self.program, self.folder, self.tables = (
+            plan, tasks, units, program, folder, tables,
+        )
         self.jobs = jobs
         self.going = {}   # by run: (process, when it was started)
         self.dropped = set()   # going, asked to stop because the others have settled what they were to show
@@ -110,7 +112,9 @@ class Runner:
         if times and left:
             mean, now = sum(times) / len(times), time.monotonic()
             going = sum(min(mean, now - begun) for _, begun in self.going.values())
-            beside = min(self.jobs, max(1, len(self.wanted())))   # a bisection needs the result of a run to choose the next
+            beside = min(
+                self.jobs, max(1, len(self.wanted()))
+            )  # a bisection needs the result of a run to choose the next
             estimate = f", left {at_most or 'about '}{clock_text((left * mean - going) / beside)}"
         return text, estimate
 
@@ -122,7 +126,8 @@ class Runner:
             self.say(counts, estimate, passing=not last)
 
     def say(self, text, estimate="", passing=False):
-        """passing: on a terminal the next line takes its place; a file gets it only when the text has changed; a new estimate alone does not count."""
+        """passing: on a terminal the next line takes its place; a file gets it only when the text has changed; a new
+        estimate alone does not count."""
         if sys.stdout.isatty():
             print(f"\r{text + estimate:<100}", end="" if passing else "\n", flush=True)
         elif text != self.said:

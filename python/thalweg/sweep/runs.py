@@ -19,13 +19,16 @@ from thalweg.case_file import setting_of
 from thalweg.history import sessions_of, warnings_of
 from thalweg.sweep.inputs import SweepError, inputs_of
 
-LONGEST_NAME = 150   # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
+LONGEST_NAME = (
+    150  # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
+)
 WAITING, DONE, FAILED, BEGUN = "waiting", "done", "failed", "begun"
 STOPPED = (3, 4)   # exit codes of thalweg run: by a signal or the wall time, and by thalweg stop
 
 
 class SweepRun:
-    """kept: names of the runs that the folder has, by their inputs (names_in); a run with the same goes by that name."""
+    """kept: names of the runs that the folder has, by their inputs (names_in); a run with the same goes by that
+    name."""
 
     def __init__(self, folder, name, plan, settings, kept=None):
         self.settings, self.plan, self.case, self.ranks = settings, plan, plan.case, plan.ranks
@@ -36,15 +39,19 @@ class SweepRun:
         self.look()
 
     def look(self):
-        """Reads what the folder knows; a run that began from something else is not taken for this one, and one that has ended
-        without the figure of a bisection has failed."""
+        """Reads what the folder knows; a run that began from something else is not taken for this one, and one that has
+        ended without the figure of a bisection has failed."""
         known = self.read_note()
         self.failure = known.pop("failure", None)
-        if self.failure and known != self.inputs and not self.folder.exists():   # it was refused, and has been corrected since
+        if (
+            self.failure and known != self.inputs and not self.folder.exists()
+        ):  # it was refused, and has been corrected since
             known, self.failure = {}, None
         if known and known != self.inputs:
-            raise SweepError(f"{self.folder} was run with other settings, or the case has changed since, or a file that it names; "
-                             f"give another --out, or remove that folder and {self.note.name} beside it.")
+            raise SweepError(
+                f"{self.folder} was run with other settings, or the case has changed since, or a file that it names; "
+                f"give another --out, or remove that folder and {self.note.name} beside it."
+            )
         self.summary = self.read_summary()
         if self.finished and not self.failure:
             self.failure = self.plan.lacks(self.summary)
@@ -54,12 +61,16 @@ class SweepRun:
             return json.loads(self.note.read_text(encoding="utf-8"))
         except FileNotFoundError:
             if self.folder.exists():
-                raise SweepError(f"{self.note}, which says what {self.folder} was run with, is missing; give another --out, or "
-                                 "remove that folder.") from None
+                raise SweepError(
+                    f"{self.note}, which says what {self.folder} was run with, is missing; give another --out, or "
+                    "remove that folder."
+                ) from None
             return {}
         except ValueError:
-            raise SweepError(f"{self.note}, which says what {self.folder} was run with, is damaged; give another --out, or remove "
-                             "both.") from None
+            raise SweepError(
+                f"{self.note}, which says what {self.folder} was run with, is damaged; give another --out, or remove "
+                "both."
+            ) from None
 
     def read_summary(self):
         """None also where a crash of the machine has left half of it: the run then goes on from its checkpoint."""
@@ -100,19 +111,25 @@ class SweepRun:
 
     def command(self, program):
         arguments = ["run", str(self.case), f"--out={self.folder}", "--resume"] + set_options(self.settings)
-        launcher = shlex.split(os.environ.get("THALWEG_LAUNCH", "mpirun")) + ["-n", str(self.ranks)] if self.ranks > 1 else []
+        launcher = (
+            shlex.split(os.environ.get("THALWEG_LAUNCH", "mpirun")) + ["-n", str(self.ranks)] if self.ranks > 1 else []
+        )
         return launcher + [program] + arguments
 
     def start(self, program):
-        """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while another
-        sweep has it, or if one has ended it. SweepError if the case, or a file it names, has been changed since the sweep began.
-        Once the process has ended, to be followed by release()."""
+        """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
+        another sweep has it, or if one has ended it. SweepError if the case, or a file it names, has been changed since
+        the sweep began. Once the process has ended, to be followed by release()."""
         if inputs_of(self.case, self.settings) != self.inputs:
-            raise SweepError(f"{self.case}, or a file that it names, has been changed since this sweep began, which has results of "
-                             "the old one. Change it back and start the same command again, or give another --out.")
+            raise SweepError(
+                f"{self.case}, or a file that it names, has been changed since this sweep began, which has results of "
+                "the old one. Change it back and start the same command again, or give another --out."
+            )
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
-        environment = os.environ | {"OMPI_MCA_hwloc_base_binding_policy": "none", "PRTE_MCA_hwloc_default_binding_policy": "none"}
+        environment = os.environ | {
+            "OMPI_MCA_hwloc_base_binding_policy": "none", "PRTE_MCA_hwloc_default_binding_policy": "none",
+        }
         self.lock = open(self.output, "a", encoding="utf-8")   # kept by the process as well, which inherits the file
         free = locked(self.lock)
         self.look()   # another sweep may have finished it
@@ -133,7 +150,9 @@ class SweepRun:
     def ended(self, exit_code):
         """To be called when the process has ended."""
         if exit_code not in (0, *STOPPED):
-            self.remember(complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}")
+            self.remember(
+                complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}"
+            )
         self.look()
 
     def remember(self, failure):
@@ -167,7 +186,8 @@ def text_of(inputs):
 
 
 def locked(file):
-    """False if another process has the lock; True also on file systems that know none, where the run folder has its own."""
+    """False if another process has the lock; True also on file systems that know none, where the run folder has its
+    own."""
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -213,8 +233,8 @@ def short_keys(keys):
 
 
 def name_of(settings, keys):
-    """The name of the run that sets these keys, in their order: slope_0.05-seed_1. A long one is cut off, and a digest tells it from
-    others that begin alike."""
+    """The name of the run that sets these keys, in their order: slope_0.05-seed_1. A long one is cut off, and a digest
+    tells it from others that begin alike."""
     short = short_keys(keys)
     parts = []
     for key in keys:

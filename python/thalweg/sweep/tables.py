@@ -32,8 +32,13 @@ def runs_table(plan, runs, units):
     rows = [head]
     for run in sorted(runs, key=lambda run: [order(run.settings.get(key)) for key in keys]):
         figures = [figure_of(run.summary or {}, column) for column in columns]
-        rows.append([run.name] + [run.settings.get(key, "") for key in keys] + [run.state, warning_count(run), run.version, text(run.wall_seconds)] +
-                    [text(figure) for figure in figures] + [run.failure or ""])
+        rows.append(
+            [run.name]
+            + [run.settings.get(key, "") for key in keys]
+            + [run.state, warning_count(run), run.version, text(run.wall_seconds)]
+            + [text(figure) for figure in figures]
+            + [run.failure or ""]
+        )
     return rows
 
 

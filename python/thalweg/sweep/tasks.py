@@ -1,5 +1,5 @@
-"""What a sweep is made of: tasks, each of which says which runs it wants next. A task is one point, or the bisection of one
-point, and independent of the others."""
+"""What a sweep is made of: tasks, each of which says which runs it wants next. A task is one point, or the bisection of
+one point, and independent of the others."""
 import math
 
 from thalweg.sweep.plan import figure_of
@@ -29,8 +29,8 @@ class PointTask:
 
 
 class BisectionTask:
-    """Looks at the middle of what is left of the range until that is narrow, and at an end of the range only if it is left
-    at last. A value is settled as soon as enough repetitions agree."""
+    """Looks at the middle of what is left of the range until that is narrow, and at an end of the range only if it is
+    left at last. A value is settled as soon as enough repetitions agree."""
 
     def __init__(self, folder, plan, number, kept=None):
         self.folder, self.plan, self.search, self.kept = folder, plan, plan.bisections[number], kept
@@ -51,7 +51,9 @@ class BisectionTask:
             self.known[value] = []
             for repetition in self.search.repetitions:
                 settings = self.settings | {self.search.key: float(f"{value:.12g}")} | repetition
-                self.known[value].append(SweepRun(self.folder, name_of(settings, self.keys), self.plan, settings, self.kept))
+                self.known[value].append(
+                    SweepRun(self.folder, name_of(settings, self.keys), self.plan, settings, self.kept)
+                )
         return self.known[value]
 
     def verdict(self, value):

@@ -1,7 +1,7 @@
 """Adds the contact law of tests/dem/laws/with_adhesion.hpp to a copy of dem/: extend.py REPOSITORY COPY.
 
-The edits are those of somebody who adds one, in the files that CONTRIBUTING.md names. new_law_test.cpp compares the motion
-of grains with theory.
+The edits are those of somebody who adds one, in the files that CONTRIBUTING.md names. new_law_test.cpp compares the
+motion of grains with theory.
 """
 import pathlib
 import sys

@@ -32,14 +32,20 @@ class Analyze(ProgramTest):
         said = self.run_well("analyze", out).stdout
         sentences = [line.split("transport: ")[1] for line in log.splitlines() if "transport: " in line][-2:]
         self.assertEqual(len(sentences), 2, log)
-        self.assertEqual([line.removeprefix("transport").strip() for line in said.splitlines() if line.startswith("transport")],
-                         sentences)
+        self.assertEqual(
+            [line.removeprefix("transport").strip() for line in said.splitlines() if line.startswith("transport")],
+            sentences,
+        )
         of_run = self.summary(out)["transport_rate"]
         analyzed = json.loads((self.folder / out / "analysis/summary.json").read_text())
-        for name, value in (("q_s_mean", "mean"), ("q_s_error", "error"), ("q_s_deviation", "deviation"),
-                            ("q_s_independent", "independent"), ("q_s_drift", "drift"), ("q_s_drift_error", "drift_error")):
+        for name, value in (
+            ("q_s_mean", "mean"), ("q_s_error", "error"), ("q_s_deviation", "deviation"),
+            ("q_s_independent", "independent"), ("q_s_drift", "drift"), ("q_s_drift_error", "drift_error"),
+        ):
             self.assertEqual(analyzed["q_s"][value], of_run[name], name)
-        self.assertEqual(analyzed["moving_grains"], {"mean": of_run["moving_grains_mean"], "error": of_run["moving_grains_error"]})
+        self.assertEqual(
+            analyzed["moving_grains"], {"mean": of_run["moving_grains_mean"], "error": of_run["moving_grains_error"]}
+        )
         return of_run
 
     def test_the_run_and_its_reader_agree_on_mean_error_and_what_is_steady(self):
@@ -54,13 +60,15 @@ class Analyze(ProgramTest):
             run = thalweg.Run(self.folder / out)
             rate = transport.transport(run, run.averaged_from("transport_rate"))
             self.assertEqual((rate.measurements, of_run["measurements"]), (count, count))
-            for name, value in (("mean", rate.rate.mean), ("error", rate.rate.error), ("deviation", rate.rate.deviation),
-                                ("independent", rate.rate.independent), ("drift", rate.verdict.drift),
-                                ("drift_error", rate.verdict.error)):
+            for name, value in (
+                ("mean", rate.rate.mean), ("error", rate.rate.error), ("deviation", rate.rate.deviation),
+                ("independent", rate.rate.independent), ("drift", rate.verdict.drift),
+                ("drift_error", rate.verdict.error),
+            ):
                 self.assertAlmostEqual(value / of_run[f"q_s_{name}"], 1.0, 11, (out, name))
             self.assertEqual(of_run["steady"] == 1, rate.verdict.steady is True)
-        # Where a restart has changed the interval the run's mean begins anew; where it measures more often than there are rows,
-        # these are too few: the numbers are still those of the run.
+        # Where a restart has changed the interval the run's mean begins anew; where it measures more often than there
+        # are rows, these are too few: the numbers are still those of the run.
         self.run_well("run", self.case, "--out", "early", "--restart", "early", "--until", "0.15", "--set",
                       "output.series.every=1e-3")
         self.assertLess(self.assert_one_mean("early")["measurements"], 53)

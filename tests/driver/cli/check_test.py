@@ -62,7 +62,8 @@ class Check(ProgramTest):
         self.assert_refused("run", self.case, "--set", "grains.0.count=4000", words=["grains.0"], ranks=2)
 
     def test_what_the_machine_has_no_memory_for_is_refused(self):
-        """Of 1.6e10 cells, 1.2 TB in their populations alone: check says so below its report, and run before it starts."""
+        """Of 1.6e10 cells, 1.2 TB in their populations alone: check says so below its report, and run before it
+        starts."""
         channel = str(Path(__file__).resolve().parents[3] / "cases/clear_channel/case.yaml")
         huge = ("--set", "domain.size=[2, 1, 1]", "--set", "domain.spacing=0.5e-3", "--set", "fluid.time_step=2e-5")
         checked = self.thalweg("check", channel, *huge)

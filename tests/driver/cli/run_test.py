@@ -104,13 +104,17 @@ class Running(ProgramTest):
         (self.folder / "run/summary.json").unlink()
         self.run_well("run", self.case, "--out", "run", "--until", "0.020003", "--restart", "run")
         self.assertTrue(self.summary("run")["finished"])
-        self.assert_refused("run", self.case, "--until", "0.02", "--restart", "run", words=["0.0202 s already", "--until"])
+        self.assert_refused(
+            "run", self.case, "--until", "0.02", "--restart", "run", words=["0.0202 s already", "--until"]
+        )
 
     def test_goes_on_when_nobody_reads_what_it_says(self):
         reader, writer = os.pipe()
         os.close(reader)
-        run = subprocess.run(self.command(("run", self.case, "--out", "run"), 0), stdout=writer, stderr=writer, cwd=self.folder,
-                             timeout=120)
+        run = subprocess.run(
+            self.command(("run", self.case, "--out", "run"), 0), stdout=writer, stderr=writer, cwd=self.folder,
+            timeout=120,
+        )
         os.close(writer)
         self.assertEqual(run.returncode, 0)
         self.assertTrue(self.summary("run")["finished"])

@@ -91,7 +91,9 @@ class Stopping(ProgramTest):
         process.wait(timeout=40)
         self.assertEqual(self.summary("run")["reason"], "stopped by SIGTERM")
         log = (self.folder / "run/run.log").read_text()
-        self.assertRegex(log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun allows only 10 s to save\)")
+        self.assertRegex(
+            log, r"to stop early: thalweg stop \S+ \(after Ctrl-C or SIGTERM mpirun allows only 10 s to save\)"
+        )
         self.assertIn("SIGCONT (mpirun sends it before it kills the ranks): saving\n", log)
         self.assert_can_go_on(2)
 
@@ -110,7 +112,10 @@ class Stopping(ProgramTest):
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)
-        self.assertIn("run saves its state and ends within a step; to continue, add --restart run", self.run_well("stop", "run").stdout)
+        self.assertIn(
+            "run saves its state and ends within a step; to continue, add --restart run",
+            self.run_well("stop", "run").stdout,
+        )
         self.assertEqual(process.wait(timeout=30), 4)
         self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())

@@ -1,7 +1,7 @@
 """Adds a collision operator, a subgrid model and a wall to a copy of lbm/: extend.py REPOSITORY COPY.
 
-The edits are those of somebody who adds one, in the files that CONTRIBUTING.md names. The compiler asks for every `case`
-that is left out. extension_test.cpp compares the results with analytic solutions.
+The edits are those of somebody who adds one, in the files that CONTRIBUTING.md names. The compiler asks for every
+`case` that is left out. extension_test.cpp compares the results with analytic solutions.
 """
 import pathlib
 import sys
@@ -30,7 +30,8 @@ COLLISION_OPERATOR = [
      "  } else if constexpr (model == CollisionModel::bgk) {"),
 ]
 
-# Smagorinsky's model from the shear alone: nu_t = 2 C^2 sqrt(S_xy^2 + S_xz^2 + S_yz^2), so E = 36 C^2 sqrt(sum Pi_ab^2).
+# Smagorinsky's model from the shear alone: nu_t = 2 C^2 sqrt(S_xy^2 + S_xz^2 + S_yz^2), so E = 36 C^2 sqrt(sum
+# Pi_ab^2).
 SUBGRID_MODEL = [
     ("collision/subgrid.hpp", "enum class SubgridModel { none, smagorinsky, qr };",
      "enum class SubgridModel { none, smagorinsky, qr, shear };"),

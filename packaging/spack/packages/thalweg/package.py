@@ -2,8 +2,8 @@ from spack.package import *
 
 
 class Thalweg(CMakePackage):
-    """Particle-resolved solver for sediment carried by a flowing fluid: lattice Boltzmann and discrete elements, coupled at the surfaces of
-    the grains.
+    """Particle-resolved solver for sediment carried by a flowing fluid: lattice Boltzmann and discrete elements,
+    coupled at the surfaces of the grains.
 
     From the root of the source: spack repo add packaging/spack; spack dev-build --source-path . thalweg@0.1.0
     """
@@ -13,7 +13,9 @@ class Thalweg(CMakePackage):
     license("BSD-3-Clause")
 
     variant("python", default=True, description="What thalweg analyze, plot, report and sweep need")
-    variant("architecture", default="x86-64-v3", description="Value of the compiler's -march", values=lambda value: True)
+    variant(
+        "architecture", default="x86-64-v3", description="Value of the compiler's -march", values=lambda value: True
+    )
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
