@@ -151,7 +151,7 @@ private:
   std::vector<Diagnostic> measured_;  // latest diagnostics of the observers
   double longest_checkpoint_ = 0.0;   // s
   double saved_at_ = 0.0;             // s since the beginning of run()
-  // On rank 0: time (s) and step of the last progress line and of the latest decision.
+  // Time (s) and step of the last progress line and of the latest decision, on rank 0.
   double printed_at_ = 0.0, decided_at_ = 0.0;
   std::int64_t printed_step_ = 0, decided_step_ = 0;
 };

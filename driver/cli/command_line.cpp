@@ -116,7 +116,7 @@ void add_others(CLI::App& app, Command& command) {
   CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
   stop->add_option("RUN_FOLDER", command.path, "The run folder")->required();
   stop->final_callback([&] { command.kind = Command::Kind::stop; });
-  // Only listed in the help; python_command.hpp runs them.
+  // These are only listed in the help; python_command.hpp runs them.
   for (const PythonCommand& other : python_commands) app.add_subcommand(other.name, other.summary);
 }
 
