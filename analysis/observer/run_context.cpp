@@ -16,6 +16,10 @@ std::vector<HeldGrains> GrainContext::held() const {
   return found;
 }
 
+bool GrainContext::any_free() const {
+  return std::any_of(populations.begin(), populations.end(), [](const PopulationContext& some) { return !some.held; });
+}
+
 bool GrainContext::any_clumps() const {
   return std::any_of(populations.begin(), populations.end(), [](const PopulationContext& some) { return some.clumps; });
 }

@@ -51,6 +51,10 @@ struct GrainContext {
   double smallest_diameter = 0.0;   // m, of spheres and members of clumps
   double largest_diameter = 0.0;    // m
   double disk_thickness = 0.0;      // m; 0: spheres
+  // Where size classes are asked for: m, of free grains, or of all if none is free, a clump with the diameter of the
+  // sphere (disk) of its volume; and the edges of classes that suit them, rising.
+  double smallest_free = 0.0, largest_free = 0.0;
+  std::vector<double> size_class_edges = {};
   // Ids, ascending, of spheres that are no grains of the bed but stand in it: a sill, a pier, a boulder.
   std::vector<GlobalId> obstacles = {};
 
@@ -61,6 +65,7 @@ struct GrainContext {
 
   GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // of ids
   std::vector<HeldGrains> held() const;
+  bool any_free() const;
   bool any_clumps() const;
 };
 

@@ -13,29 +13,11 @@ namespace thalweg::analysis {
 
 namespace {
 
-constexpr double share_that_counts_as_moving = 0.01;
-
 // Range of velocities in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
 constexpr double slowest = -5.0, fastest = 15.0;
 constexpr int velocity_bins = 200;
 
 }  // namespace
-
-double TransportScales::weight() const {
-  return (fluid_density > 0.0 ? std::abs(grain_density / fluid_density - 1.0) : 1.0) * gravity;
-}
-
-double TransportScales::flux() const { return std::sqrt(weight() * grain_diameter) * grain_diameter; }
-
-double TransportScales::fall_speed() const { return flux() > 0.0 ? flux() / grain_diameter : 1.0; }
-
-double TransportScales::moving_speed() const {
-  if (model_fluid_speed > 0.0) return share_that_counts_as_moving * model_fluid_speed;
-  double speed = flux() / grain_diameter;
-  if (kinematic_viscosity > 0.0)
-    speed = std::min(speed, weight() * grain_diameter * grain_diameter / (18.0 * kinematic_viscosity));
-  return share_that_counts_as_moving * speed;
-}
 
 TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
     : MeanObserver(communicator, TransportRateKeys::section, keys.from, keys.every),
@@ -149,11 +131,13 @@ std::vector<std::string> TransportRate::remarks() const {
   if (q_s_.count() == 0) return {};
   const CorrelatedMean::Error error = q_s_.error();
   const double unit = scales_.have_q_star() ? scales_.flux() : 1.0;
-  return {fmt::format("transport: {} = {:.4g} +- {:.2g}{}, deviation {:.2g}, from {:.4g} to {:.4g} s ({} measurements "
-                      "worth {:.3g} independent ones{})",
-                      scales_.have_q_star() ? "q*" : "q_s", q_s_.mean() / unit, error.of_mean / unit,
-                      scales_.have_q_star() ? "" : " m^2/s", q_s_.deviation() / unit, first_time_, last_time_,
-                      q_s_.count(), error.independent, error.holds() ? "" : ": too few, the error is larger"),
+  const std::string mean = fmt::format("transport: {} = {}{}", scales_.have_q_star() ? "q*" : "q_s",
+                                       with_error(q_s_, unit), scales_.have_q_star() ? "" : " m^2/s");
+  if (q_s_.count() == 1)
+    return {fmt::format("{}, a single measurement, at {:.4g} s: an error takes at least two", mean, first_time_)};
+  return {fmt::format("{}, deviation {:.2g}, from {:.4g} to {:.4g} s ({} measurements worth {:.3g} independent ones{})",
+                      mean, q_s_.deviation() / unit, first_time_, last_time_, q_s_.count(), error.independent,
+                      error.holds() ? "" : ": too few, the error is larger"),
           fmt::format("transport: {}", trend_of(q_s_).sentence(unit))};
 }
 
@@ -224,13 +208,7 @@ void describe(SectionVisitor& visit, TransportRateKeys& keys) {
              {.unit = "s", .meaning = "start of the means, hops and distributions", .at_least = 0.0});
   visit.real("every", keys.every,
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
-  visit.real(
-      "moving_speed", keys.moving_speed,
-      {.unit = "m/s",
-       .meaning = "faster grains are moving; default: 1 % of the lower of sqrt((s - 1) g d) and Stokes' settling "
-                  "speed, of sqrt(g d) without a fluid, of v_0 in a model fluid",
-       .at_least = 0.0,
-       .example = 1e-3});
+  describe_moving_speed(visit, keys.moving_speed);
 }
 
 void check(const TransportRateKeys&, const RunContext& run) { require_grains(run, "measure"); }
@@ -241,19 +219,6 @@ std::optional<std::string> warning(const TransportRateKeys& keys, const RunConte
       "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
       "none: consider analysis.transport_rate.from: {:.2g}.",
       keys.from, run.until, 0.5 * run.until);
-}
-
-TransportScales transport_scales(const RunContext& run) {
-  TransportScales scales{run.grains->reference_diameter, run.grains->reference_density, 0.0, run.gravity.norm()};
-  if (run.fluid) {
-    scales.fluid_density = run.fluid->density;
-    scales.kinematic_viscosity = run.fluid->kinematic_viscosity;
-  }
-  if (run.model_fluid) {
-    scales.gravity = run.model_fluid->gravity;
-    scales.model_fluid_speed = run.model_fluid->speed;
-  }
-  return scales;
 }
 
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,

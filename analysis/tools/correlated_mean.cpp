@@ -2,6 +2,8 @@
 
 #include "analysis/tools/long_run_variance.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,6 +44,11 @@ CorrelatedMean::Error CorrelatedMean::error() const {
   for (double& distance : distances) distance -= middle;
   const double squared = long_run_variance(distances, About::mean, round_off()).of_values * length_ / count_;
   return {std::sqrt(squared), std::min(count_, squares_ / count_ / squared + 1.0)};
+}
+
+std::string with_error(const CorrelatedMean& mean, double unit) {
+  const std::string text = fmt::format("{:.4g}", mean.mean() / unit);
+  return mean.count() < 2 ? text : fmt::format("{} +- {:.2g}", text, mean.error().of_mean / unit);
 }
 
 std::vector<double> CorrelatedMean::state() const {

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace thalweg::analysis {
@@ -48,5 +49,8 @@ private:
   double length_ = 1.0;                      // values in a batch
   double begun_ = 0.0, sum_of_begun_ = 0.0;  // number and sum of the values in the batch that is not complete
 };
+
+// "1.234 +- 0.056", in the given unit; the mean alone where there are fewer than two values and so no error.
+std::string with_error(const CorrelatedMean& mean, double unit);
 
 }  // namespace thalweg::analysis

@@ -31,7 +31,7 @@ void fill_in_profile(Case& c) {
   if (open.bed_height) profile.bed_height = settled_height(c);
   if (open.shear_velocity) profile.shear_velocity = flow.friction_velocity;
   if (open.roughness)
-    profile.roughness = c.grains.empty() ? c.fluid.kinematic_viscosity / (9.0 * *profile.shear_velocity)
+    profile.roughness = c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, *profile.shear_velocity)
                                          : largest_diameter(c) / roughness_a_diameter;
 }
 

@@ -56,7 +56,8 @@ Channel channel_of(const Case& c) {
 
 // ln(distance/z_0), at least 1 so that a flow as deep as its roughness has a velocity.
 double log_of(double distance, double friction_velocity, const Channel& channel) {
-  const double zero = channel.roughness > 0.0 ? channel.roughness : channel.viscosity / (9.0 * friction_velocity);
+  const double zero =
+      channel.roughness > 0.0 ? channel.roughness : smooth_roughness(channel.viscosity, friction_velocity);
   return std::max(1.0, std::log(distance / zero));
 }
 
@@ -101,7 +102,8 @@ void limit_to_what_the_slope_gives(const Case& c, double along, FlowEstimate& fl
 
 // Smooth walls on either side: the law of the wall holds over half the width.
 double velocity_between_side_walls(double friction_velocity, const Channel& channel) {
-  const double distance = 9.0 * friction_velocity * std::min(channel.reach, channel.half_width) / channel.viscosity;
+  const double distance =
+      smooth_wall_number * friction_velocity * std::min(channel.reach, channel.half_width) / channel.viscosity;
   return distance > std::numbers::e ? friction_velocity / karman_constant * std::log(distance) : infinite;
 }
 
@@ -192,7 +194,7 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
   }
   flow.friction_velocity = friction_velocity_of(velocity, [&](double friction_velocity) {
     return log_of(0.5 * depth, friction_velocity, channel) +
-           std::max(1.0, std::log(4.5 * friction_velocity * depth / channel.viscosity));
+           std::max(1.0, std::log(0.5 * smooth_wall_number * friction_velocity * depth / channel.viscosity));
   });
   flow.spin_up = velocity * depth / (flow.friction_velocity * flow.friction_velocity);
   return flow;

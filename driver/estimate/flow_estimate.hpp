@@ -28,6 +28,12 @@
 namespace thalweg::driver {
 
 inline constexpr double roughness_a_diameter = 15.0;  // d/z_0
+inline constexpr double smooth_wall_number = 9.0;     // nu/(u_tau z_0) of a bare floor or wall
+
+// z_0 (m) of a bare floor: nu/(9 u_tau), of m^2/s and m/s.
+constexpr double smooth_roughness(double viscosity, double friction_velocity) {
+  return viscosity / (smooth_wall_number * friction_velocity);
+}
 
 enum class FlowCause {
   none,

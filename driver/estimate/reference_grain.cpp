@@ -2,20 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace thalweg::driver {
 namespace {
 
-bool is_free(const beds::Population& population) {
-  return !population.fixed && !population.motion && !population.prescribed_velocity;
-}
-
 std::vector<const beds::Population*> populations_that_count(const Case& c) {
   std::vector<const beds::Population*> chosen;
-  const bool any_free = std::any_of(c.grains.begin(), c.grains.end(), is_free);
-  for (const beds::Population& population : c.grains)
-    if (is_free(population) || !any_free) chosen.push_back(&population);
+  for (const std::size_t p : free_populations(c)) chosen.push_back(&c.grains[p]);
   return chosen;
 }
 
@@ -37,12 +29,16 @@ ReferenceGrain reference_grain(const Case& c) {
   const std::vector<const beds::Population*> populations = populations_that_count(c);
   const double density = mean_density(populations);
   if (c.analysis.reference_diameter) return {*c.analysis.reference_diameter, density};
+  return {beds::median_by_mass(represented_sizes(c), c.disks.has_value()), density};
+}
+
+std::vector<beds::SizeCount> represented_sizes(const Case& c) {
   std::vector<beds::SizeCount> sizes;
-  for (const beds::Population* population : populations) {
+  for (const beds::Population* population : populations_that_count(c)) {
     const std::vector<beds::SizeCount> more = population->sizes_of_grains();
     sizes.insert(sizes.end(), more.begin(), more.end());
   }
-  return {beds::median_by_mass(beds::merged(std::move(sizes)), c.disks.has_value()), density};
+  return beds::merged(std::move(sizes));
 }
 
 std::string reference_text(const Case& c) {

@@ -5,6 +5,7 @@
 #include "driver/case/case.hpp"
 
 #include <string>
+#include <vector>
 
 namespace thalweg::driver {
 
@@ -17,6 +18,9 @@ struct ReferenceGrain {
 // (beds::median_by_mass()), unless analysis.reference_diameter gives another; and their mean density. The case must
 // have grains.
 ReferenceGrain reference_grain(const Case& c);
+
+// Sizes of the grains that it stands for, rising; a clump has the diameter of the sphere (disk) of its volume.
+std::vector<beds::SizeCount> represented_sizes(const Case& c);
 
 // Text for reports: "diameter 0.00495 m, density 2550 kg/m^3 (...)".
 std::string reference_text(const Case& c);

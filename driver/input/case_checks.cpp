@@ -110,6 +110,10 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                            c.initial.fluid.linear_profile->velocity.norm());
   if (!c.initial.fluid.log_profile) return;
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
+  if (c.filled_in.profile.shear_velocity && !(*profile.shear_velocity > 0.0))
+    throw document.error("initial.fluid.log_profile",
+                         "nothing drives the water along the bed, so that its shear velocity does not follow from the "
+                         "case; give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
   const double depth = c.domain.size[2] - *profile.bed_height;
   if (depth > 0.0 && depth <= *profile.roughness)
     throw document.error(

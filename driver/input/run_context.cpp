@@ -1,5 +1,6 @@
 #include "driver/input/run_context.hpp"
 
+#include "beds/sizes/size_classes.hpp"
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/estimate/obstacles.hpp"
 #include "driver/estimate/reference_grain.hpp"
@@ -40,10 +41,24 @@ analysis::FluidContext fluid_context(const Case& c) {
           c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0};
 }
 
+// Sizes of free grains, and the classes that suit them: the sieves of their populations, where they have some.
+void add_sizes(const Case& c, analysis::GrainContext& context) {
+  if (!c.analysis.observers.of<analysis::FractionalTransportKeys>()) return;
+  const std::vector<beds::SizeCount> sizes = represented_sizes(c);
+  context.smallest_free = sizes.front().diameter;
+  context.largest_free = sizes.back().diameter;
+  std::vector<double> sieves;
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held() && grains.sizes.sieve)
+      sieves.insert(sieves.end(), grains.sizes.sieve->sizes.begin(), grains.sizes.sieve->sizes.end());
+  context.size_class_edges = beds::size_class_edges(sizes, std::move(sieves));
+}
+
 analysis::GrainContext grain_context(const Case& c) {
   const ReferenceGrain reference = reference_grain(c);
   analysis::GrainContext context{populations_of(c),    reference.diameter,  reference.density,
                                  smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
+  add_sizes(c, context);
   for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.push_back(sphere.id);
   if (!has_fluid(c)) return context;
   context.body_force = body_force(c);

@@ -75,6 +75,11 @@ def draw_profiles(wanted):
     return draw_of_each_run(wanted, figure_of)
 
 
+def draw_sizes(wanted):
+    by_size = module("thalweg.figures.sizes")
+    return draw_of_each_run(wanted, lambda run: ("sizes", lambda: by_size.figure_of(run)))
+
+
 def draw_relation(wanted):
     yield saved(module("thalweg.figures.relation").draw(wanted.runs, wanted.start, wanted.stop, wanted.surface, wanted.table), wanted.out)
 
@@ -138,6 +143,7 @@ def add_to(commands):
     add_time(add_kind(kinds, "side", draw_side_view, "Side view of the grains in front of the flow (bed.png), of a fluid alone flow.png"))
     add_kind(kinds, "q", draw_transport_rate, "Transport rate against time, with the averaging window, the mean and its error")
     add_kind(kinds, "profiles", draw_profiles, "Means over the height: solid fraction, velocities, stresses and their balance")
+    add_kind(kinds, "sizes", draw_sizes, "Transport by size class beside relations of the literature, and gradings of bed, surface and load")
     relation = add_kind(kinds, "relation", draw_relation, "q* against the Shields number, beside relations and data of the literature",
                         several="transport_relation")
     add_window(relation)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from thalweg import bed, water
+from thalweg import bed, sizes, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.transport import column_of, transport
@@ -96,7 +96,14 @@ def describe_transport(report):
     if found.moving is not None:
         moving, error = found.moving
         report.numbers["moving_grains"] = {"mean": moving, "error": error}
-        report.say("moving", f"{moving:.4g} +- {error:.2g} grains faster than the threshold")
+        known = f" +- {error:.2g}" if math.isfinite(error) else ""
+        report.say("moving", f"{moving:.4g}{known} grains faster than the threshold")
+
+
+def describe_sizes(report):
+    found = sizes.Sizes(report.run)
+    report.numbers["fractional_transport"] = found.numbers()
+    report.say("sizes", found.sentence())
 
 
 def describe_surface(report, name, title, surface):
@@ -155,6 +162,8 @@ def report_of(run, start=None, stop=None):
     if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
         report.say("window", "shorter than wanted: series.csv has no rows of the rest")
     report.attempt("transport", lambda: describe_transport(report))
+    if "fractional_transport" in (run.case.get("analysis") or {}):
+        report.attempt("sizes", lambda: describe_sizes(report))
     report.attempt("surface", lambda: describe_profiles(report))
     if run.case.get("fluid"):
         report.attempt("static", lambda: describe_camera(report))

@@ -18,6 +18,8 @@ def face_type(boundary):
     return boundary.get("type") if isinstance(boundary, dict) else boundary
 
 
+PLACES = ("z", "y", "diameter")   # arrays of profiles.h5 with the places along an axis
+
 # Faces that exchange shear with the fluid.
 DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "slip_law_of_the_wall")
 
@@ -71,7 +73,13 @@ class Run:
         if not path.exists():
             return Profiles({}, path)
         with opened(path) as file:
-            return Profiles({name: columns_of(group, [axis for axis in "zy" if axis in group]) for name, group in file.items()}, path)
+            return Profiles({name: columns_of(group, [axis for axis in PLACES if axis in group]) for name, group in file.items()}, path)
+
+    @property
+    def fractional_transport(self):
+        """Transport, surface and bed by size class (`analysis.fractional_transport`), the finest first: arrays over `diameter` (m), with
+        `edges` (m) and `d50` (m: of bed, surface, load)."""
+        return self.profiles["fractional_transport"]
 
     def _recorded(self, name):
         """Paths of the parts of what an observer records."""

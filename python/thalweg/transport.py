@@ -22,6 +22,8 @@ class Transport(NamedTuple):
     def sentences(self):
         """The mean with its error, and the verdict."""
         rate = self.rate
+        if self.measurements < 2:
+            return (f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g} s: an error takes at least two",)
         few = "" if rate.error_holds else ": too few, the error is larger"
         return (f"{self.symbol} = {rate.mean:.4g} +- {rate.error:.2g}{self.unit}, deviation {rate.deviation:.2g}, from "
                 f"{self.start:.4g} to {self.stop:.4g} s ({self.measurements} measurements worth {rate.independent:.3g} independent "

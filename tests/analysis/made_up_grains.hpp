@@ -13,6 +13,7 @@ namespace thalweg::analysis {
 struct MadeUpGrain {
   double radius, mass;
   Vec3 velocity, angular_velocity;
+  Vec3 position = Vec3::Zero();
 };
 
 class MadeUpGrains {
@@ -28,7 +29,7 @@ public:
       mass_.push_back(made.mass);
       velocity_.push_back(made.velocity);
       angular_velocity_.push_back(made.angular_velocity);
-      position_.emplace_back(Vec3::Zero());
+      position_.push_back(made.position);
     }
   }
 

@@ -41,6 +41,7 @@ output:
   checkpoint: {every: 0.04, keep: 3}
 analysis:
   transport_rate: {from: 0.01, every: 1.0e-3}
+  fractional_transport: {from: 0.01, every: 1.0e-3}
   bed_surface: {every: 3.0e-3, static_time: 0.015}
 """
 
@@ -52,7 +53,7 @@ analysis:
             self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
             for name in ("series.csv", "profiles.h5"):
                 self.assertEqual((self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), out)
-            for observer in ("transport_rate", "bed_surface"):
+            for observer in ("transport_rate", "fractional_transport", "bed_surface"):
                 self.assertEqual(self.summary(out)[observer], self.summary("one")[observer])
 
     def test_the_bed_at_the_end(self):
@@ -74,7 +75,7 @@ analysis:
         half_way = self.folder / "straight/checkpoints/step_400.h5"
         self.run_well("run", self.case, "--out", "again", "--restart", half_way, ranks=2)
         self.assertEqual(self.last_checkpoint("again").read_bytes(), self.last_checkpoint("straight").read_bytes())
-        for observer in ("transport_rate", "bed_surface"):
+        for observer in ("transport_rate", "fractional_transport", "bed_surface"):
             self.assertEqual(self.summary("again")[observer], self.summary("straight")[observer])
         self.assertGreater(self.summary("again")["bed_surface"]["static_pictures"], 2)
         rows = (self.folder / "straight/series.csv").read_text().splitlines()
@@ -86,6 +87,7 @@ analysis:
                       "analysis.stress_balance={from: 0.01, every: 1.0e-3}")
         summary = self.summary("run")
         for observer, name in (("transport_rate", "q_star_mean"), ("transport_rate", "moving_grains_mean"),
+                               ("fractional_transport", "class_0_q_s_mean"), ("fractional_transport", "armouring_ratio_mean"),
                                ("bed_surface", "bed_height_mean"), ("bed_surface", "shields_number_mean"),
                                ("stress_balance", "largest_difference")):
             self.assertIsNone(summary[observer][name], name)
@@ -110,6 +112,16 @@ analysis:
         self.assertAlmostEqual(transport["reference_density"], (2550 * large + 2000 * small) / (large + small), delta=1e-9)
         self.assertEqual(transport["measurements"], 71)   # every millisecond from 10 to 80
         self.assertGreaterEqual(transport["hops"], 0)
+        # Classes of the two sizes, which add up to all.
+        sizes = Run(self.folder / "run").fractional_transport
+        numpy.testing.assert_allclose(sizes["diameter"], [4.2e-3, 4.95e-3], rtol=1e-12)
+        numpy.testing.assert_allclose(sizes["density"], [2000, 2550], rtol=1e-12)
+        numpy.testing.assert_allclose(sizes["bed_share"][1], large / (large + small), rtol=1e-12)
+        numpy.testing.assert_allclose(sizes["q_s"].sum(), transport["q_s_mean"], rtol=1e-12)
+        numpy.testing.assert_allclose(series["class_0_q_s"] + series["class_1_q_s"], series["q_s"], rtol=1e-9, atol=1e-18)
+        numpy.testing.assert_array_equal(series["class_0_moving_grains"] + series["class_1_moving_grains"], series["moving_grains"])
+        numpy.testing.assert_allclose(series["class_0_surface_share"] + series["class_1_surface_share"], 1.0, rtol=1e-12)
+        self.assertIn("sizes: d50 of the bed 0.00495 m", (self.folder / "run/run.log").read_text())
         # R_h and the stress of the last row from its height.
         depth = 0.0264 - series["bed_height"][-1]
         radius = depth * 0.010725 / (2 * depth + 0.010725)
@@ -142,10 +154,16 @@ analysis:
 
     def test_what_cannot_be_measured_is_refused(self):
         self.assert_refused("run", self.case, "--set", "domain.boundaries.bottom=periodic", "--set",
-                            "domain.boundaries.top=periodic", "--set", "analysis.transport_rate.from=0",
+                            "domain.boundaries.top=periodic", "--set", "analysis.fractional_transport=null",
                             words=["analysis.bed_surface", "periodic"])
         self.assert_refused("run", self.case, "--set", "grains=[]", "--set", "analysis.transport_rate=null",
-                            words=["analysis.bed_surface", "no grains"])
+                            "--set", "analysis.fractional_transport=null", words=["analysis.bed_surface", "no grains"])
+        self.assert_refused("run", self.case, "--set", "analysis.fractional_transport.edges=[4.5e-3, 5e-3]",
+                            words=["analysis.fractional_transport.edges", "cover all free grains, from 0.0042 to 0.00495 m"])
+        self.assert_refused("run", self.case, "--set", "domain.boundaries.bottom=periodic", "--set",
+                            "domain.boundaries.top=periodic", words=["analysis.fractional_transport", "from above"])
+        self.assert_refused("run", self.case, "--set", "analysis.fractional_transport.edges=[5e-3, 4e-3]",
+                            words=["analysis.fractional_transport.edges", "must rise"])
         self.assert_refused("run", self.case, "--set", "analysis.reference_diameter=0",
                             words=["analysis.reference_diameter = 0", "a number in m above 0"])
 

@@ -31,8 +31,9 @@ def draw_rates(axes, time, rate, found):
         mean, error = found.rate.mean, found.rate.error
         if np.isfinite(error):
             axes.fill_between((found.start, found.stop), mean - error, mean + error, color=MEAN_COLOUR, alpha=0.2, lw=0, zorder=1)
+        known = f" \u00b1 {error:.2g}" if np.isfinite(error) else ""
         axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
-                    label=f"mean from {found.start:.4g} to {found.stop:.4g} s: {mean:.4g} \u00b1 {error:.2g}{found.unit}")
+                    label=f"mean from {found.start:.4g} to {found.stop:.4g} s: {mean:.4g}{known}{found.unit}")
     axes.spines[["top", "right"]].set_visible(False)
 
 

@@ -6,10 +6,11 @@ from datetime import datetime
 import numpy as np
 
 from thalweg.errors import RunFolderError
-from thalweg.figures import fluid_profiles, overview, transport_rate
+from thalweg.figures import fluid_profiles, overview, sizes, transport_rate
 from thalweg.page import html
 from thalweg.page.figures import column_figure, series_figure
 from thalweg.history import command_of, sessions_of, settings_in, warnings_of
+from thalweg.sizes import Sizes
 from thalweg.transport import transport
 
 SYSTEMS = {"resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains", "model_fluid": "grains in a model fluid",
@@ -21,7 +22,7 @@ WORDS = {"bed_height": "height of the bed", "porosity": "porosity", "flow_depth"
 def page_of(run):
     """The whole page."""
     sessions = sessions_of(run.folder)
-    parts = [heading(run, sessions), findings(run), pictures(run), transport_section(run), profiles(run), course(run),
+    parts = [heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run), profiles(run), course(run),
              warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions), repetition(run), footer(run)]
     return html.document(f"{run.name} - Thalweg", "\n".join(part for part in parts if part))
 
@@ -96,6 +97,17 @@ def transport_section(run):
     except RunFolderError as error:
         parts.append(html.paragraph(f"There is no mean: {error}"))
     return html.section("Transport", *parts)
+
+
+def size_section(run):
+    """Transport by size class."""
+    if "fractional_transport" not in run.profiles:
+        return ""
+    caption = ("Left: q* of each class by its own size and its share of the surface (Wilcock and Crowe) or of the bed (Parker and Klingeman); "
+               "right: gradings of bed, surface and load.")
+    found = Sizes(run)
+    return html.section("Transport by size class", attempt(lambda: sizes.figure_of(run), caption), html.paragraph(found.sentence() + "."),
+                        html.table(found.rows(), found.HEADINGS, range(1, len(found.HEADINGS))))
 
 
 def profiles(run):

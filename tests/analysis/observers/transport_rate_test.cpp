@@ -169,6 +169,16 @@ TEST(TransportRate, CountsTheVelocitiesOfMovingGrains) {
   EXPECT_NEAR(whole, 1.0, 1e-12);
 }
 
+TEST(TransportRate, SaysOfASingleMeasurementThatItHasNoError) {
+  TransportRate rate(world, scales, {});
+  EXPECT_TRUE(rate.remarks().empty());
+  rate.observe(MadeUpGrains(world, 300, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.5));
+  ASSERT_EQ(rate.remarks().size(), 1U);
+  // q* = pi/6 (1/4)^3 300/200/(3/4)
+  EXPECT_EQ(rate.remarks().front(),
+            "transport: q* = 0.01636, a single measurement, at 0.5 s: an error takes at least two");
+}
+
 // Fluxes that alternate between two values have a known mean and no drift; those that rise have one. The same state
 // from a checkpoint in the middle.
 TEST(TransportRate, SaysWhetherTheMeanIsSteady) {
