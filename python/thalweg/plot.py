@@ -143,7 +143,7 @@ def add_to(commands):
     add_time(add_kind(kinds, "side", draw_side_view, "Side view of the grains in front of the flow (bed.png), of a fluid alone flow.png"))
     add_kind(kinds, "q", draw_transport_rate, "Transport rate against time, with the averaging window, the mean and its error")
     add_kind(kinds, "profiles", draw_profiles, "Means over the height: solid fraction, velocities, stresses and their balance")
-    add_kind(kinds, "sizes", draw_sizes, "Transport by size class beside relations of the literature, and gradings of bed, surface and load")
+    add_kind(kinds, "sizes", draw_sizes, "Transport by size class, and gradings of bed, surface and load")
     relation = add_kind(kinds, "relation", draw_relation, "q* against the Shields number, beside relations and data of the literature",
                         several="transport_relation")
     add_window(relation)

@@ -101,7 +101,7 @@ def describe_transport(report):
 
 
 def describe_sizes(report):
-    found = sizes.Sizes(report.run)
+    found = sizes.sizes_of(report.run)
     report.numbers["fractional_transport"] = found.numbers()
     report.say("sizes", found.sentence())
 

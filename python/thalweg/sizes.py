@@ -76,9 +76,17 @@ class Sizes:
                           "armouring_ratio": self.armouring_ratio}
 
 
-def measured(sizes):
-    """Raises RunFolderError where the means have not begun."""
-    if not np.isfinite(sizes.q_s_error).any() and not sizes.surface_share.any():
-        raise RunFolderError(f"{sizes.run.folder}: nothing has been measured by size class yet; the means begin at "
-                             f"{sizes.run.averaged_from('fractional_transport'):g} s.")
-    return sizes
+def measured(run):
+    """Whether the run has means by size class: profiles.h5 has the group from the first checkpoint on, also before they begin."""
+    return "fractional_transport" in run.profiles and bool(run.fractional_transport["surface_share"].any())
+
+
+def sizes_of(run):
+    """The size classes of a run. Raises RunFolderError where the means have not begun."""
+    if "fractional_transport" in run.profiles and not measured(run):
+        raise RunFolderError(f"{run.folder}: nothing has been measured by size class yet; the means begin at "
+                             f"{run.averaged_from('fractional_transport'):g} s.")
+    if "fractional_transport" not in run.profiles:
+        raise RunFolderError(f"{run.folder / 'profiles.h5'}: it has no transport by size class (analysis.fractional_transport in the case; "
+                             "written with every checkpoint).")
+    return Sizes(run)

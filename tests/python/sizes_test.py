@@ -9,6 +9,7 @@ import numpy as np
 import made_up_folder as made_up
 import thalweg
 from thalweg.errors import RunFolderError
+from thalweg.figures import overview
 from thalweg.figures import sizes as figure
 from thalweg.page.sections import size_section
 from thalweg.report import Report, describe_sizes
@@ -78,6 +79,8 @@ class SizesTest(made_up.MadeUpFolder):
         self.write(q_s_error=[np.nan, np.nan], surface_share=[0.0, 0.0])
         with self.assertRaisesRegex(RunFolderError, "begin at 1 s"):
             figure.figure_of(self.run_())
+        self.assertEqual(size_section(self.run_()), "")
+        self.assertNotIn("sizes", [name for name, _ in overview.figures_of(self.run_())])
 
     def test_page_and_report(self):
         page = size_section(self.run_())
@@ -93,6 +96,8 @@ class SizesTest(made_up.MadeUpFolder):
         self.assertEqual(size_section(self.run_()), "")
         with self.assertRaisesRegex(KeyError, "fractional_transport"):
             Sizes(self.run_())
+        with self.assertRaisesRegex(RunFolderError, "analysis.fractional_transport in the case"):
+            figure.figure_of(self.run_())
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 from thalweg import drawing, height_profiles
 from thalweg.errors import RunFolderError
 from thalweg.figures import fluid_profiles, sizes, transport_rate
+from thalweg.sizes import measured as measured_by_size
 
 
 def bed_figure(run, time=None):
@@ -37,7 +38,7 @@ def figures_of(run, time=None):
     figures = [] if system == "continuum" else [side_view_of(run, time)]
     if system == "continuum" or (system != "fluid" and "transport_rate" in analysis):
         figures.append(("transport_rate", lambda: transport_rate.figure_of(run)))
-    if "fractional_transport" in run.profiles:
+    if measured_by_size(run):
         figures.append(("sizes", lambda: sizes.figure_of(run)))
     profiles = profiles_of(run)
     return figures + ([("profiles", profiles)] if profiles else [])

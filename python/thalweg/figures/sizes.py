@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg.height_profiles import GRID
-from thalweg.sizes import Sizes, measured
+from thalweg.sizes import sizes_of
 
 BED, SURFACE, LOAD = "#7f6a4d", "#14496e", "#c0392b"
 
@@ -43,7 +43,7 @@ def draw_gradings(axes, sizes):
 
 def figure_of(run):
     """The rates at the left, the gradings at the right."""
-    sizes = measured(Sizes(run))
+    sizes = sizes_of(run)
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
     draw_rates(left, sizes)
     draw_gradings(right, sizes)

@@ -11,6 +11,7 @@ from thalweg.page import html
 from thalweg.page.figures import column_figure, series_figure
 from thalweg.history import command_of, sessions_of, settings_in, warnings_of
 from thalweg.sizes import Sizes
+from thalweg.sizes import measured as measured_by_size
 from thalweg.transport import transport
 
 SYSTEMS = {"resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains", "model_fluid": "grains in a model fluid",
@@ -101,7 +102,7 @@ def transport_section(run):
 
 def size_section(run):
     """Transport by size class."""
-    if "fractional_transport" not in run.profiles:
+    if not measured_by_size(run):
         return ""
     caption = ("Left: q* of each class by its own size and its share of the surface (Wilcock and Crowe) or of the bed (Parker and Klingeman); "
                "right: gradings of bed, surface and load.")
