@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace thalweg::analysis::fractional_transport_test {
 namespace {
@@ -93,25 +94,24 @@ TEST(FractionalTransport, AddsUpToTheTransportRate) {
     return MadeUpGrain{0.3 + 0.2 * std::cos(phase), 1.0, Vec3(std::sin(3.0 * phase), 0.1, 0.0), Vec3::Zero(),
                        Vec3(std::fmod(7.3 * phase, 20.0), std::fmod(3.1 * phase, 10.0), 1.0 + std::sin(phase))};
   };
-  MadeUpGrains grains(world, 1000, made);
-  grains.hold([](GlobalId id) { return id % 7 == 0; });
-  grains.bind(6, {994, 1.0, 0.05, Vec3::Zero(), Vec3(0.5, 0.0, 0.0), 0.0});
-  FractionalTransport observer(world, box, scales, SizeClasses({0.2, 0.3, 0.5, 0.7, 0.8, 1.0}), {}, 0.05);
-  TransportRate rate(world, scales, {});
-  observer.observe(grains.snapshot(0.0));
-  rate.observe(grains.snapshot(0.0));
-  double q_s = 0.0, moving = 0.0, bed = 0.0, surface = 0.0;
-  const auto shown = shown_by(observer);
-  for (std::size_t c = 0; c < 5; ++c) {
-    q_s += shown.at("q_s")[c];
-    moving += shown.at("moving_grains")[c];
-    bed += shown.at("bed_share")[c];
-    surface += shown.at("surface_share")[c];
+  for (const bool with_clump : {false, true}) {
+    const MPI_Comm ranks = with_clump ? MPI_COMM_SELF : world;  // members are where their clump is
+    MadeUpGrains grains(ranks, 1000, made);
+    grains.hold([](GlobalId id) { return id % 7 == 0; });
+    if (with_clump) grains.bind(6, {994, 1.0, 0.05, Vec3::Zero(), Vec3(0.5, 0.0, 0.0), 0.0});
+    FractionalTransport observer(ranks, box, scales, SizeClasses({0.2, 0.3, 0.5, 0.7, 0.8, 1.0}), {}, 0.05);
+    TransportRate rate(ranks, scales, {});
+    observer.observe(grains.snapshot(0.0));
+    rate.observe(grains.snapshot(0.0));
+    const auto sum = [shown = shown_by(observer)](const char* name) {
+      const std::vector<double>& values = shown.at(name);
+      return std::accumulate(values.begin(), values.end(), 0.0);
+    };
+    EXPECT_NEAR(sum("q_s"), value_of(rate.diagnostics(), "q_s"), 1e-14);
+    EXPECT_EQ(sum("moving_grains"), value_of(rate.diagnostics(), "moving_grains"));
+    EXPECT_NEAR(sum("bed_share"), 1.0, 1e-14);
+    EXPECT_NEAR(sum("surface_share"), 1.0, 1e-14);
   }
-  EXPECT_NEAR(q_s, value_of(rate.diagnostics(), "q_s"), 1e-14);
-  EXPECT_EQ(moving, value_of(rate.diagnostics(), "moving_grains"));
-  EXPECT_NEAR(bed, 1.0, 1e-14);
-  EXPECT_NEAR(surface, 1.0, 1e-14);
 }
 
 // A plate of the small grains that is held is no bed: the large ones are all there is, and what shows between them
@@ -132,10 +132,10 @@ TEST(FractionalTransport, LeavesOutGrainsWhoseMotionIsGiven) {
 // The last two of the large grains are a clump of the volume of a small one: its class follows the volume, and both of
 // its members are seen as small.
 TEST(FractionalTransport, SortsAClumpByItsVolume) {
-  MadeUpGrains grains = armoured_bed(world, 0.0, 0.1);
+  MadeUpGrains grains = armoured_bed(MPI_COMM_SELF, 0.0, 0.1);
   const GlobalId clump = small_grains + large_grains - 2;
   grains.bind(2, {clump, 3000.0 * volume(small), volume(small), Vec3::Zero(), Vec3(0.1, 0.0, 0.0), 0.0});
-  FractionalTransport observer = of_two_classes();
+  FractionalTransport observer(MPI_COMM_SELF, box, scales, SizeClasses({0.25, 0.63, 1.6}), {}, 0.0173);
   observer.observe(grains.snapshot(0.0));
   const std::vector<Diagnostic> results = observer.results();
   EXPECT_NEAR(value_of(results, "class_0_q_s_mean"), volume(small) * 0.1 / 200.0, 1e-16);
