@@ -8,7 +8,8 @@ from thalweg.run import Run
 
 
 def module(name):
-    """A module that draws, loaded when it is needed: matplotlib, and for scenes VTK, are not needed by other commands."""
+    """A module that draws, loaded when it is needed: matplotlib, and for scenes VTK, are not needed by other
+    commands."""
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as missing:
@@ -27,8 +28,10 @@ def saved(figure, path):
 def refuse_one_name(wanted):
     """The figures of several runs would have the same name."""
     if wanted.out and len(wanted.runs) > 1:
-        raise RunFolderError(f"--out {wanted.out}: each of {len(wanted.runs)} runs has a figure of its own; give one run, or leave --out "
-                             "away, and they go into the folders of the runs.")
+        raise RunFolderError(
+            f"--out {wanted.out}: each of {len(wanted.runs)} runs has a figure of its own; give one run, or leave --out"
+            " away, and they go into the folders of the runs."
+        )
 
 
 def draw_of_each_run(wanted, figure_of):
@@ -69,8 +72,10 @@ def draw_profiles(wanted):
     def figure_of(run):
         draw = overview.profiles_of(run)
         if draw is None:
-            raise RunFolderError(f"{run.folder / 'profiles.h5'}: it has no means of grains or fluid yet (analysis.grain_profiles, "
-                                 "stress_balance or fluid_statistics in the case; written with every checkpoint).")
+            raise RunFolderError(
+                f"{run.folder / 'profiles.h5'}: it has no means of grains or fluid yet (analysis.grain_profiles, "
+                "stress_balance or fluid_statistics in the case; written with every checkpoint)."
+            )
         return "profiles", draw
     return draw_of_each_run(wanted, figure_of)
 
@@ -81,7 +86,10 @@ def draw_sizes(wanted):
 
 
 def draw_relation(wanted):
-    yield saved(module("thalweg.figures.relation").draw(wanted.runs, wanted.start, wanted.stop, wanted.surface, wanted.table), wanted.out)
+    yield saved(
+        module("thalweg.figures.relation").draw(wanted.runs, wanted.start, wanted.stop, wanted.surface, wanted.table),
+        wanted.out,
+    )
 
 
 def draw_visible(wanted):
@@ -115,7 +123,9 @@ def add_window(parser):
 
 
 def add_time(parser):
-    parser.add_argument("--time", type=float, metavar="SECONDS", help="Simulated time of the picture (default: the last)")
+    parser.add_argument(
+        "--time", type=float, metavar="SECONDS", help="Simulated time of the picture (default: the last)"
+    )
 
 
 def add_kind(kinds, name, draw, text, of_one=False, several=False):
@@ -125,49 +135,89 @@ def add_kind(kinds, name, draw, text, of_one=False, several=False):
     if of_one:
         kind.add_argument("run", type=Path, metavar="RUN", help="Run folder")
     else:
-        kind.add_argument("runs", type=Path, nargs="*" if name == "relation" else "+", metavar="RUN", help="Run folders")
+        kind.add_argument(
+            "runs", type=Path, nargs="*" if name == "relation" else "+", metavar="RUN", help="Run folders"
+        )
     if several:
-        kind.add_argument("--out", type=Path, metavar="FILE", default=Path(f"{several}.png"), help="The figure (default: %(default)s)")
+        kind.add_argument(
+            "--out", type=Path, metavar="FILE", default=Path(f"{several}.png"), help="The figure (default: %(default)s)"
+        )
     elif name == "all":
-        kind.add_argument("--out", type=Path, metavar="FOLDER", help="Where the figures of one run go (default: the run folder)")
+        kind.add_argument(
+            "--out", type=Path, metavar="FOLDER", help="Where the figures of one run go (default: the run folder)"
+        )
     elif not of_one:
         kind.add_argument("--out", type=Path, metavar="FILE", help="The figure of one run (default: in the run folder)")
     return kind
 
 
 def add_to(commands):
-    plot = commands.add_parser("plot", description="Figures of runs, finished or still going. thalweg plot KIND --help says what each "
-                                                   "kind has to choose.")
+    plot = commands.add_parser(
+        "plot",
+        description="Figures of runs, finished or still going. thalweg plot KIND --help says what each "
+        "kind has to choose.",
+    )
     kinds = plot.add_subparsers(dest="kind", required=True, metavar="KIND", title="kinds")
     add_time(add_kind(kinds, "all", draw_all, "Side view, transport rate and profiles, as far as a run has them"))
-    add_time(add_kind(kinds, "side", draw_side_view, "Side view of the grains in front of the flow (bed.png), of a fluid alone flow.png"))
-    add_kind(kinds, "q", draw_transport_rate, "Transport rate against time, with the averaging window, the mean and its error")
-    add_kind(kinds, "profiles", draw_profiles, "Means over the height: solid fraction, velocities, stresses and their balance")
+    add_time(
+        add_kind(
+            kinds, "side", draw_side_view,
+            "Side view of the grains in front of the flow (bed.png), of a fluid alone flow.png",
+        )
+    )
+    add_kind(
+        kinds, "q", draw_transport_rate,
+        "Transport rate against time, with the averaging window, the mean and its error",
+    )
+    add_kind(
+        kinds, "profiles", draw_profiles,
+        "Means over the height: solid fraction, velocities, stresses and their balance",
+    )
     add_kind(kinds, "sizes", draw_sizes, "Transport by size class, and gradings of bed, surface and load")
-    relation = add_kind(kinds, "relation", draw_relation, "q* against the Shields number, beside relations and data of the literature",
-                        several="transport_relation")
+    relation = add_kind(
+        kinds, "relation", draw_relation, "q* against the Shields number, beside relations and data of the literature",
+        several="transport_relation",
+    )
     add_window(relation)
     relation.add_argument("--surface", choices=("fraction", "static"), default="fraction",
                           help="Of the bed: half its solid fraction, or the static pixels of Zhang et al.")
-    relation.add_argument("--table", metavar="FILE", help="Table of the points, brought up to date; all that it has are drawn")
-    visible = add_kind(kinds, "visible", draw_visible, "Profiles of the grains that a camera sees beside the flume", several="visible_grains")
+    relation.add_argument(
+        "--table", metavar="FILE", help="Table of the points, brought up to date; all that it has are drawn"
+    )
+    visible = add_kind(
+        kinds, "visible", draw_visible, "Profiles of the grains that a camera sees beside the flume",
+        several="visible_grains",
+    )
     add_window(visible)
-    visible.add_argument("--frames", type=int, default=50, metavar="N", help="How many frames count at most (default: %(default)s)")
-    phases = add_kind(kinds, "two_phases", draw_two_phases, "A resolved bed beside the two-phase continuum", of_one=True,
-                      several="two_phases")
+    visible.add_argument(
+        "--frames", type=int, default=50, metavar="N", help="How many frames count at most (default: %(default)s)"
+    )
+    phases = add_kind(
+        kinds, "two_phases", draw_two_phases, "A resolved bed beside the two-phase continuum", of_one=True,
+        several="two_phases",
+    )
     phases.add_argument("continuum", type=Path, metavar="CONTINUUM", nargs="?", help="Run folder of a continuum")
     add_film(add_kind(kinds, "film", draw_film, "A film of the side view", of_one=True))
-    picture = add_kind(kinds, "picture", draw_picture, "Grains and flow in three dimensions, drawn by VTK without a screen", of_one=True)
+    picture = add_kind(
+        kinds, "picture", draw_picture, "Grains and flow in three dimensions, drawn by VTK without a screen",
+        of_one=True,
+    )
     picture.add_argument("--out", type=Path, metavar="FILE", help="A .png (default: picture.png in the run folder)")
     add_time(picture)
-    picture.add_argument("--view", dest="direction", type=float, nargs=3, default=(-0.45, -1.0, 0.4), metavar=("X", "Y", "Z"),
-                         help="Direction from which to look at the middle of the box")
-    picture.add_argument("--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="In pixels")
+    picture.add_argument(
+        "--view", dest="direction", type=float, nargs=3, default=(-0.45, -1.0, 0.4), metavar=("X", "Y", "Z"),
+        help="Direction from which to look at the middle of the box",
+    )
+    picture.add_argument(
+        "--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="In pixels"
+    )
 
 
 def add_film(film):
-    film.add_argument("--out", type=Path, metavar="FILE",
-                      help="A .gif, an .mp4 (where ffmpeg is installed) or a folder of images (default: film.gif in the run folder)")
+    film.add_argument(
+        "--out", type=Path, metavar="FILE",
+        help="A .gif, an .mp4 (where ffmpeg is installed) or a folder of images (default: film.gif in the run folder)",
+    )
     add_window(film)
     film.add_argument("--every", type=float, default=0.0, metavar="SECONDS", help="Between frames (default: all)")
     film.add_argument("--rate", type=float, default=20.0, metavar="N", help="Images a second (default: %(default)g)")

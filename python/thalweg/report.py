@@ -1,7 +1,9 @@
-"""What a run says of its sediment: transport, surface, Shields number and profiles between two times, from stored output.
+"""What a run says of its sediment: transport, surface, Shields number and profiles between two times, from stored
+output.
 
 What a run folder does not hold is left out, with the reason. Averages that the run gathered itself (profiles.h5,
-summary.json) are better where they cover the time wanted; this is for other times, and for runs without those observers.
+summary.json) are better where they cover the time wanted; this is for other times, and for runs without those
+observers.
 """
 import csv
 import json
@@ -73,15 +75,19 @@ def write_columns(path, columns):
 
 
 def window(run, start=None, stop=None):
-    """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or, where it has
-    none, the middle of the run, to its end."""
+    """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or, where
+    it has none, the middle of the run, to its end."""
     times = run.series["time"]
     stop = float(times[-1]) if stop is None else stop
     if start is None:
-        start = run.averaged_from("transport_rate") if "transport_rate" in (run.case.get("analysis") or {}) else 0.5 * stop
+        start = (
+            run.averaged_from("transport_rate") if "transport_rate" in (run.case.get("analysis") or {}) else 0.5 * stop
+        )
     if not start < stop or start >= times[-1] or stop <= times[0]:
-        raise RunFolderError(f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has rows from "
-                             f"{times[0]:g} to {times[-1]:g} s. Give other times.")
+        raise RunFolderError(
+            f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has rows from "
+            f"{times[0]:g} to {times[-1]:g} s. Give other times."
+        )
     return max(start, float(times[0])), min(stop, float(times[-1]))
 
 
@@ -115,7 +121,9 @@ def describe_surface(report, name, title, surface):
     if run.driven_by_slope:
         how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
     try:
-        shields = float(bed.shields_number(run, surface, report.start, report.stop, name == "surface_by_solid_fraction"))
+        shields = float(
+            bed.shields_number(run, surface, report.start, report.stop, name == "surface_by_solid_fraction")
+        )
     except RunFolderError as error:
         report.say(title, f"{place}; Shields number left out: {error}")
         return
@@ -133,7 +141,8 @@ def describe_profiles(report):
 
 
 def describe_water(report, surface):
-    """Between side walls transport follows the speed of the water steeply, so a run says whether it has the right one."""
+    """Between side walls transport follows the speed of the water steeply, so a run says whether it has the right
+    one."""
     run, expected = report.run, water.expected_speeds(report.run)
     if expected is None:
         return
@@ -142,8 +151,11 @@ def describe_water(report, surface):
     report.numbers["water"] = {"above": above, "from": since, "mean_speed": speeds.mean, "middle_speed": speeds.middle,
                                "law_of_the_wall": expected._asdict()}
     mean, middle = (f"{value:.4g} m/s ({100 * (value / right - 1):+.1f} %" for value, right in zip(speeds, expected))
-    report.say("water", f"above {above:.4g} m, from {since:g} s on: {mean} from the law of the wall at the side walls), "
-                        f"half-way between them {middle})")
+    report.say(
+        "water",
+        f"above {above:.4g} m, from {since:g} s on: {mean} from the law of the wall at the side walls), "
+        f"half-way between them {middle})",
+    )
 
 
 def describe_camera(report):

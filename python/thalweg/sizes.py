@@ -1,5 +1,5 @@
-"""Transport by size class (`analysis.fractional_transport`), as river scientists show it: rates by the share of the surface or of the
-bed, gradings, and the armouring of the bed."""
+"""Transport by size class (`analysis.fractional_transport`), as river scientists show it: rates by the share of the
+surface or of the bed, gradings, and the armouring of the bed."""
 import math
 
 import numpy as np
@@ -14,10 +14,14 @@ class Sizes:
     def __init__(self, run):
         found = run.fractional_transport
         self.run, self.edges, self.diameter = run, found["edges"], found["diameter"]
-        self.bed_share, self.surface_share, self.load_share = (found[f"{what}_share"] for what in ("bed", "surface", "load"))
+        self.bed_share, self.surface_share, self.load_share = (
+            found[f"{what}_share"] for what in ("bed", "surface", "load")
+        )
         self.q_s, self.q_s_error, self.density = found["q_s"], found["q_s_error"], found["density"]
         self.moving_grains = found["moving_grains"]
-        self.q_star, self.q_star_error = found.get("q_star"), found.get("q_star_error")   # by the surface; None without a fluid
+        self.q_star, self.q_star_error = found.get("q_star"), found.get(
+            "q_star_error"
+        )  # by the surface; None without a fluid
         self.bed_d50, self.surface_d50, self.load_d50 = (float(size) for size in found["d50"])
 
     @property
@@ -26,7 +30,8 @@ class Sizes:
         return self.surface_d50 / self.bed_d50
 
     def q_star_by_bed(self):
-        """q* of each class by its share of the bed, as Parker and Klingeman (1982), and its error; None without a fluid."""
+        """q* of each class by its share of the bed, as Parker and Klingeman (1982), and its error; None without a
+        fluid."""
         if self.q_star is None:
             return None
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -34,13 +39,14 @@ class Sizes:
         return self.q_star * ratio, self.q_star_error * ratio
 
     def shear_velocity(self):
-        """m/s, of the mean stress on the bed that the run has measured (`analysis.bed_surface`); None where it has none."""
+        """m/s, of the mean stress on the bed that the run has measured (`analysis.bed_surface`); None where it has
+        none."""
         stress = ((self.run.summary or {}).get("bed_surface") or {}).get("bed_stress_mean")
         return math.sqrt(stress / self.run.case["fluid"]["density"]) if stress and stress > 0.0 else None
 
     def w_star(self):
-        """W*_i = (s - 1) g q_si / (F_i u_*^3) of each class, F_i its share of the surface (Wilcock and Crowe 2003, eq. 2); None where the
-        shear velocity is not known."""
+        """W*_i = (s - 1) g q_si / (F_i u_*^3) of each class, F_i its share of the surface (Wilcock and Crowe 2003, eq.
+        2); None where the shear velocity is not known."""
         velocity = self.shear_velocity()
         if velocity is None:
             return None
@@ -53,31 +59,46 @@ class Sizes:
         return np.concatenate([[0.0], np.cumsum(share)])
 
     def sentence(self):
-        load = f"{1e3 * self.load_d50:.4g} mm" if math.isfinite(self.load_d50) else "not known, as nothing moves downstream on the whole"
-        return (f"d50 of the bed {1e3 * self.bed_d50:.4g} mm, of its surface {1e3 * self.surface_d50:.4g} mm, of the load {load}; "
-                f"armouring ratio {self.armouring_ratio:.3g}")
+        load = (
+            f"{1e3 * self.load_d50:.4g} mm"
+            if math.isfinite(self.load_d50)
+            else "not known, as nothing moves downstream on the whole"
+        )
+        return (
+            f"d50 of the bed {1e3 * self.bed_d50:.4g} mm, of its surface {1e3 * self.surface_d50:.4g} mm, of the load"
+            f" {load}; armouring ratio {self.armouring_ratio:.3g}"
+        )
 
     def rows(self):
         """A row of texts for each class, under HEADINGS."""
         def text(values, c, digits=3):
             return "" if values is None or not math.isfinite(values[c]) else f"{values[c]:.{digits}g}"
         w_star = self.w_star()
-        return [(f"{1e3 * self.edges[c]:.3g} to {1e3 * self.edges[c + 1]:.3g}", text(self.bed_share, c), text(self.surface_share, c),
-                 text(self.load_share, c), text(self.q_star, c), text(self.q_star_error, c, 2), text(w_star, c), text(self.moving_grains, c))
-                for c in range(len(self.diameter))]
+        return [
+            (
+                f"{1e3 * self.edges[c]:.3g} to {1e3 * self.edges[c + 1]:.3g}", text(self.bed_share, c),
+                text(self.surface_share, c), text(self.load_share, c), text(self.q_star, c),
+                text(self.q_star_error, c, 2), text(w_star, c), text(self.moving_grains, c),
+            )
+            for c in range(len(self.diameter))
+        ]
 
     def numbers(self):
         """For a summary: SI units, lists over the classes."""
-        arrays = {"edges": self.edges, "diameter": self.diameter, "bed_share": self.bed_share, "surface_share": self.surface_share,
-                  "load_share": self.load_share, "q_s": self.q_s, "q_s_error": self.q_s_error, "q_star": self.q_star,
-                  "q_star_error": self.q_star_error, "w_star": self.w_star(), "moving_grains": self.moving_grains}
+        arrays = {
+            "edges": self.edges, "diameter": self.diameter, "bed_share": self.bed_share,
+            "surface_share": self.surface_share, "load_share": self.load_share, "q_s": self.q_s,
+            "q_s_error": self.q_s_error, "q_star": self.q_star, "q_star_error": self.q_star_error,
+            "w_star": self.w_star(), "moving_grains": self.moving_grains,
+        }
         numbers = {name: [float(value) for value in values] for name, values in arrays.items() if values is not None}
         return numbers | {"bed_d50": self.bed_d50, "surface_d50": self.surface_d50, "load_d50": self.load_d50,
                           "armouring_ratio": self.armouring_ratio}
 
 
 def measured(run):
-    """Whether the run has means by size class: profiles.h5 has the group from the first checkpoint on, also before they begin."""
+    """Whether the run has means by size class: profiles.h5 has the group from the first checkpoint on, also before they
+    begin."""
     return "fractional_transport" in run.profiles and bool(run.fractional_transport["surface_share"].any())
 
 
@@ -87,6 +108,8 @@ def sizes_of(run):
         raise RunFolderError(f"{run.folder}: nothing has been measured by size class yet; the means begin at "
                              f"{run.averaged_from('fractional_transport'):g} s.")
     if "fractional_transport" not in run.profiles:
-        raise RunFolderError(f"{run.folder / 'profiles.h5'}: it has no transport by size class (analysis.fractional_transport in the case; "
-                             "written with every checkpoint).")
+        raise RunFolderError(
+            f"{run.folder / 'profiles.h5'}: it has no transport by size class (analysis.fractional_transport in the"
+            " case; written with every checkpoint)."
+        )
     return Sizes(run)

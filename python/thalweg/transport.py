@@ -1,4 +1,5 @@
-"""The mean transport rate of a run, its error and whether it is steady: the same numbers, and the same words, as run.log has."""
+"""The mean transport rate of a run, its error and whether it is steady: the same numbers, and the same words, as
+run.log has."""
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -23,16 +24,26 @@ class Transport(NamedTuple):
         """The mean with its error, and the verdict."""
         rate = self.rate
         if self.measurements < 2:
-            return (f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g} s: an error takes at least two",)
+            return (
+                (
+                    f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g} s: an error"
+                    " takes at least two"
+                ),
+            )
         few = "" if rate.error_holds else ": too few, the error is larger"
-        return (f"{self.symbol} = {rate.mean:.4g} +- {rate.error:.2g}{self.unit}, deviation {rate.deviation:.2g}, from "
-                f"{self.start:.4g} to {self.stop:.4g} s ({self.measurements} measurements worth {rate.independent:.3g} independent "
-                f"ones{few})", self.verdict.sentence())
+        return (
+            (
+                f"{self.symbol} = {rate.mean:.4g} +- {rate.error:.2g}{self.unit}, deviation {rate.deviation:.2g}, from"
+                f" {self.start:.4g} to {self.stop:.4g} s ({self.measurements} measurements worth"
+                f" {rate.independent:.3g} independent ones{few})"
+            ), self.verdict.sentence(),
+        )
 
 
 def transport(run, start=None, stop=None):
-    """Transport of a run between two times (s). Without times it is the mean that the run itself has made, from summary.json or,
-    while the run is going, from the rows of series.csv; with times it is that of the rows. RunFolderError where there is none."""
+    """Transport of a run between two times (s). Without times it is the mean that the run itself has made, from
+    summary.json or, while the run is going, from the rows of series.csv; with times it is that of the rows.
+    RunFolderError where there is none."""
     column = column_of(run)
     if start is None and stop is None and of_run(run).get("q_s_independent") is not None:
         return by_the_run(run, column)
@@ -66,7 +77,9 @@ def by_the_run(run, column):
         return float("nan") if found[name] is None else found[name]
 
     rate = Mean(*(number(f"{column}_{name}") for name in ("mean", "error", "deviation")), number("q_s_independent"))
-    verdict = Steadiness({1: STEADY, 0: DRIFTING, -1: TOO_FEW, -2: NOT_BOUNDED}[found["steady"]], number(f"{column}_drift"),
-                         number(f"{column}_drift_error"))
+    verdict = Steadiness(
+        {1: STEADY, 0: DRIFTING, -1: TOO_FEW, -2: NOT_BOUNDED}[found["steady"]], number(f"{column}_drift"),
+        number(f"{column}_drift_error"),
+    )
     return Transport(found["measured_from"], found["measured_until"], int(found["measurements"]), rate, verdict,
                      (number("moving_grains_mean"), number("moving_grains_error")), *symbol_and_unit(column))

@@ -1,4 +1,5 @@
-"""Transport by size class as Python shows it: scales, gradings, figure, page and report of a run whose numbers are known."""
+"""Transport by size class as Python shows it: scales, gradings, figure, page and report of a run whose numbers are
+known."""
 import json
 import unittest
 
@@ -15,17 +16,21 @@ from thalweg.page.sections import size_section
 from thalweg.report import Report, describe_sizes
 from thalweg.sizes import Sizes
 
-ARRAYS = {"edges": ([2e-3, 4e-3, 8e-3], "m"), "diameter": ([3e-3, 6e-3], "m"), "density": ([2550.0, 2550.0], "kg/m^3"),
-          "bed_share": ([0.5, 0.5], "1"), "surface_share": ([0.2, 0.8], "1"), "surface_share_error": ([0.01, 0.01], "1"),
-          "load_share": ([0.75, 0.25], "1"), "q_s": ([3e-6, 1e-6], "m^2/s"), "q_s_error": ([3e-7, 2e-7], "m^2/s"),
-          "q_star": ([0.04, 0.01], "1"), "q_star_error": ([0.004, 0.002], "1"), "moving_grains": ([8.0, 0.5], "1"),
-          "moving_grains_error": ([1.0, 0.1], "1")}
+ARRAYS = {
+    "edges": ([2e-3, 4e-3, 8e-3], "m"), "diameter": ([3e-3, 6e-3], "m"), "density": ([2550.0, 2550.0], "kg/m^3"),
+    "bed_share": ([0.5, 0.5], "1"), "surface_share": ([0.2, 0.8], "1"), "surface_share_error": ([0.01, 0.01], "1"),
+    "load_share": ([0.75, 0.25], "1"), "q_s": ([3e-6, 1e-6], "m^2/s"), "q_s_error": ([3e-7, 2e-7], "m^2/s"),
+    "q_star": ([0.04, 0.01], "1"), "q_star_error": ([0.004, 0.002], "1"), "moving_grains": ([8.0, 0.5], "1"),
+    "moving_grains_error": ([1.0, 0.1], "1"),
+}
 
 
 class SizesTest(made_up.MadeUpFolder):
     def setUp(self):
         super().setUp()
-        (self.folder / "case.yaml").write_text(made_up.CASE.replace("from: 1.0}", "from: 1.0}, fractional_transport: {from: 1.0}"))
+        (self.folder / "case.yaml").write_text(
+            made_up.CASE.replace("from: 1.0}", "from: 1.0}, fractional_transport: {from: 1.0}")
+        )
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n1,1\n2,1\n3,1\n")
         (self.folder / "summary.json").write_text(json.dumps({"bed_surface": {"bed_stress_mean": 10.0}}))
         self.write()

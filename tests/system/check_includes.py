@@ -4,7 +4,8 @@
     check_includes.py [ROOT]      of the repository (default: the one this file is in)
 
 - A module includes, and its CMake target links, only the modules it may depend on; only tests use driver.
-- A room (a folder of a module) includes only itself and the rooms before it; a module's own folder comes after its rooms.
+- A room (a folder of a module) includes only itself and the rooms before it; a module's own folder comes after its
+rooms.
 - No room has more than MOST_FILES files.
 - VTK and HDF5 appear only in io, and a header of io that shows them is not included from elsewhere; yaml-cpp appears
   only in io and driver.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Observers of transport and of the bed's surface in a whole run: same bits on any ranks, same means after a restart, and
-a run that does not notice them.
+"""Observers of transport and of the bed's surface in a whole run: same bits on any ranks, same means after a restart,
+and a run that does not notice them.
 
 Called by ctest: observer_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
@@ -52,7 +52,9 @@ analysis:
             self.run_well("run", self.case, "--out", out, ranks=ranks)
             self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
             for name in ("series.csv", "profiles.h5"):
-                self.assertEqual((self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), out)
+                self.assertEqual(
+                    (self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), out
+                )
             for observer in ("transport_rate", "fractional_transport", "bed_surface"):
                 self.assertEqual(self.summary(out)[observer], self.summary("one")[observer])
 
@@ -86,10 +88,12 @@ analysis:
         self.run_well("run", self.case, "--until", "0.002", "--set", "analysis.bed_surface.from=0.01", "--set",
                       "analysis.stress_balance={from: 0.01, every: 1.0e-3}")
         summary = self.summary("run")
-        for observer, name in (("transport_rate", "q_star_mean"), ("transport_rate", "moving_grains_mean"),
-                               ("fractional_transport", "class_0_q_s_mean"), ("fractional_transport", "armouring_ratio_mean"),
-                               ("bed_surface", "bed_height_mean"), ("bed_surface", "shields_number_mean"),
-                               ("stress_balance", "largest_difference")):
+        for observer, name in (
+            ("transport_rate", "q_star_mean"), ("transport_rate", "moving_grains_mean"),
+            ("fractional_transport", "class_0_q_s_mean"), ("fractional_transport", "armouring_ratio_mean"),
+            ("bed_surface", "bed_height_mean"), ("bed_surface", "shields_number_mean"),
+            ("stress_balance", "largest_difference"),
+        ):
             self.assertIsNone(summary[observer][name], name)
             self.assertEqual(summary[observer]["measurements"], 0)
         self.assertGreater(summary["transport_rate"]["reference_diameter"], 0.0)
@@ -105,11 +109,15 @@ analysis:
 
     def test_the_numbers_belong_together(self):
         self.run_well("run", self.case)
-        transport, surface, series = self.summary("run")["transport_rate"], self.summary("run")["bed_surface"], self.series()
+        transport, surface, series = (
+            self.summary("run")["transport_rate"], self.summary("run")["bed_surface"], self.series(),
+        )
         # 20 of 4.95 mm have 0.897 of the volume of all; density of them all: mass over volume.
         self.assertEqual(transport["reference_diameter"], 4.95e-3)
         large, small = 20 * 4.95 ** 3, 6 * 4.2 ** 3
-        self.assertAlmostEqual(transport["reference_density"], (2550 * large + 2000 * small) / (large + small), delta=1e-9)
+        self.assertAlmostEqual(
+            transport["reference_density"], (2550 * large + 2000 * small) / (large + small), delta=1e-9
+        )
         self.assertEqual(transport["measurements"], 71)   # every millisecond from 10 to 80
         self.assertGreaterEqual(transport["hops"], 0)
         # Classes of the two sizes, which add up to all.
@@ -118,9 +126,15 @@ analysis:
         numpy.testing.assert_allclose(sizes["density"], [2000, 2550], rtol=1e-12)
         numpy.testing.assert_allclose(sizes["bed_share"][1], large / (large + small), rtol=1e-12)
         numpy.testing.assert_allclose(sizes["q_s"].sum(), transport["q_s_mean"], rtol=1e-12)
-        numpy.testing.assert_allclose(series["class_0_q_s"] + series["class_1_q_s"], series["q_s"], rtol=1e-9, atol=1e-18)
-        numpy.testing.assert_array_equal(series["class_0_moving_grains"] + series["class_1_moving_grains"], series["moving_grains"])
-        numpy.testing.assert_allclose(series["class_0_surface_share"] + series["class_1_surface_share"], 1.0, rtol=1e-12)
+        numpy.testing.assert_allclose(
+            series["class_0_q_s"] + series["class_1_q_s"], series["q_s"], rtol=1e-9, atol=1e-18
+        )
+        numpy.testing.assert_array_equal(
+            series["class_0_moving_grains"] + series["class_1_moving_grains"], series["moving_grains"]
+        )
+        numpy.testing.assert_allclose(
+            series["class_0_surface_share"] + series["class_1_surface_share"], 1.0, rtol=1e-12
+        )
         self.assertIn("sizes: d50 of the bed 0.00495 m", (self.folder / "run/run.log").read_text())
         # R_h and the stress of the last row from its height.
         depth = 0.0264 - series["bed_height"][-1]
@@ -130,7 +144,8 @@ analysis:
         self.assertAlmostEqual(series["bed_stress"][-1], 1000 * along * radius, delta=1e-9)
         excess = (transport["reference_density"] - 1000) * 9.8 * 4.95e-3
         self.assertAlmostEqual(series["shields_number"][-1], 1000 * along * radius / excess, delta=1e-9)
-        # At the very end, two steps of the series later at most, the grains still fall: they have a height, but are no bed.
+        # At the very end, two steps of the series later at most, the grains still fall: they have a height, but are no
+        # bed.
         bed = self.summary("run")["bed"]
         self.assertAlmostEqual(bed["bed_height"], series["bed_height"][-1], delta=0.1 * 4.95e-3)
         self.assertGreater(bed["porosity"], 0.6)
@@ -149,7 +164,9 @@ analysis:
             outline = profiles["bed_surface/static_surface"][()]
             self.assertEqual(len(outline), round(0.0264 / (4.95e-3 / 25)))
             self.assertAlmostEqual(outline.mean(), surface["static_bed_height_mean"], delta=1e-12)
-            edges, density = profiles["transport_rate/velocity_edges"][()], profiles["transport_rate/velocity_density"][()]
+            edges, density = (
+                profiles["transport_rate/velocity_edges"][()], profiles["transport_rate/velocity_density"][()],
+            )
             numpy.testing.assert_allclose((density * numpy.diff(edges)[:, None]).sum(axis=0), 1.0, atol=1e-9)
 
     def test_what_cannot_be_measured_is_refused(self):
@@ -158,8 +175,10 @@ analysis:
                             words=["analysis.bed_surface", "periodic"])
         self.assert_refused("run", self.case, "--set", "grains=[]", "--set", "analysis.transport_rate=null",
                             "--set", "analysis.fractional_transport=null", words=["analysis.bed_surface", "no grains"])
-        self.assert_refused("run", self.case, "--set", "analysis.fractional_transport.edges=[4.5e-3, 5e-3]",
-                            words=["analysis.fractional_transport.edges", "cover all free grains, from 0.0042 to 0.00495 m"])
+        self.assert_refused(
+            "run", self.case, "--set", "analysis.fractional_transport.edges=[4.5e-3, 5e-3]",
+            words=["analysis.fractional_transport.edges", "cover all free grains, from 0.0042 to 0.00495 m"],
+        )
         self.assert_refused("run", self.case, "--set", "domain.boundaries.bottom=periodic", "--set",
                             "domain.boundaries.top=periodic", words=["analysis.fractional_transport", "from above"])
         self.assert_refused("run", self.case, "--set", "analysis.fractional_transport.edges=[5e-3, 4e-3]",
@@ -248,7 +267,9 @@ analysis: {bed_surface: {every: 0.1}, wall_forces: {}, population_loads: {}}
         series = self.series()
         stress = self.resistance(series) / self.AREA   # what the lid gives, floor and spheres take
         self.assertAlmostEqual(series["bed_stress"][-1] / stress, 1.0, delta=0.01)
-        self.assertAlmostEqual(self.summary("run")["bed"]["shields_number"], series["bed_stress"][-1] / self.SHIELDS, delta=1e-12)
+        self.assertAlmostEqual(
+            self.summary("run")["bed"]["shields_number"], series["bed_stress"][-1] / self.SHIELDS, delta=1e-12
+        )
         # Couette flow from somewhere between the floor and the tops of the spheres.
         self.assertGreater(stress, 900 * 1e-4 * 0.05 / 0.024)
         self.assertLess(stress, 900 * 1e-4 * 0.05 / 0.019)

@@ -6,8 +6,8 @@ from thalweg.sizes import measured as measured_by_size
 
 
 def bed_figure(run, time=None):
-    """The grains, coloured by speed, in front of the fluid's speed in the middle plane, from the frames nearest to each other
-    in time (s)."""
+    """The grains, coloured by speed, in front of the fluid's speed in the middle plane, from the frames nearest to each
+    other in time (s)."""
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
@@ -33,7 +33,8 @@ def profiles_of(run):
 
 
 def figures_of(run, time=None):
-    """Names of the figures that the system and the case call for, and the functions that draw them. time: of the side view, s."""
+    """Names of the figures that the system and the case call for, and the functions that draw them. time: of the side
+    view, s."""
     system, analysis = run.case.get("system"), run.case.get("analysis") or {}
     figures = [] if system == "continuum" else [side_view_of(run, time)]
     if system == "continuum" or (system != "fluid" and "transport_rate" in analysis):

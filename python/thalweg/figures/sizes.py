@@ -9,20 +9,26 @@ BED, SURFACE, LOAD = "#7f6a4d", "#14496e", "#c0392b"
 
 
 def draw_rates(axes, sizes):
-    """q*_i over the class's share of the surface and of the bed, against d_i over the d50 of the bed. Without a fluid the rates."""
+    """q*_i over the class's share of the surface and of the bed, against d_i over the d50 of the bed. Without a fluid
+    the rates."""
     place = sizes.diameter / sizes.bed_d50
     if sizes.q_star is None:
         axes.errorbar(place, sizes.q_s, np.nan_to_num(sizes.q_s_error), fmt="o", color=SURFACE, capsize=2)
         axes.set(xlabel="$d_i\\,/\\,d_{50}$ of the bed", ylabel=r"$q_{si}$ [m$^2$/s]", xscale="log")
         return
     drawn = 0
-    for (rate, error), label, style in ((sizes.q_star_by_bed(), "by share of the bed $f_i$", {"mfc": "white", "color": BED}),
-                                        ((sizes.q_star, sizes.q_star_error), "by share of the surface $F_i$", {"color": SURFACE})):
+    for (rate, error), label, style in (
+        (sizes.q_star_by_bed(), "by share of the bed $f_i$", {"mfc": "white", "color": BED}),
+        ((sizes.q_star, sizes.q_star_error), "by share of the surface $F_i$", {"color": SURFACE}),
+    ):
         shown = np.isfinite(rate) & (rate > 0.0)
         error = np.minimum(np.nan_to_num(error), 0.99 * np.where(shown, rate, 1.0))
         axes.errorbar(place[shown], rate[shown], error[shown], fmt="o-", lw=0.8, capsize=2, label=label, **style)
         drawn += shown.sum()
-    axes.set(xlabel="$d_i\\,/\\,d_{50}$ of the bed", ylabel=r"$q^*_i = q_{si}\,/\,(F_i \sqrt{(s_i-1)\,g\,d_i^3})$", xscale="log")
+    axes.set(
+        xlabel="$d_i\\,/\\,d_{50}$ of the bed", ylabel=r"$q^*_i = q_{si}\,/\,(F_i \sqrt{(s_i-1)\,g\,d_i^3})$",
+        xscale="log",
+    )
     if drawn:
         axes.set_yscale("log")
         axes.legend(fontsize=8, frameon=False)
@@ -31,8 +37,10 @@ def draw_rates(axes, sizes):
 
 
 def draw_gradings(axes, sizes):
-    for share, d50, colour, name in ((sizes.bed_share, sizes.bed_d50, BED, "bed"), (sizes.surface_share, sizes.surface_d50, SURFACE, "surface"),
-                                     (sizes.load_share, sizes.load_d50, LOAD, "load")):
+    for share, d50, colour, name in (
+        (sizes.bed_share, sizes.bed_d50, BED, "bed"), (sizes.surface_share, sizes.surface_d50, SURFACE, "surface"),
+        (sizes.load_share, sizes.load_d50, LOAD, "load"),
+    ):
         if np.isfinite(share).all():
             axes.plot(1e3 * sizes.edges, 100.0 * sizes.finer(share), "o-", ms=3, lw=1.2, color=colour,
                       label=f"{name}, $d_{{50}}$ {1e3 * d50:.3g} mm")

@@ -1,4 +1,5 @@
-"""The transport rate against time: every measurement, the averaging window, and the mean with its error that run.log has."""
+"""The transport rate against time: every measurement, the averaging window, and the mean with its error that run.log
+has."""
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -19,8 +20,8 @@ def mean_transport(run):
 
 
 def draw_rates(axes, time, rate, found):
-    """The measured rates and their running mean over a tenth of the time; behind them the averaging window, with the mean in a
-    band of one standard error on either side."""
+    """The measured rates and their running mean over a tenth of the time; behind them the averaging window, with the
+    mean in a band of one standard error on either side."""
     axes.plot(time, rate, color=RATE_COLOUR, linewidth=0.9, zorder=3, label="measured")
     if len(time) > 100:
         window = 0.1 * (time[-1] - time[0])
@@ -30,7 +31,9 @@ def draw_rates(axes, time, rate, found):
         axes.axvspan(found.start, found.stop, color="0.94", lw=0, zorder=0)
         mean, error = found.rate.mean, found.rate.error
         if np.isfinite(error):
-            axes.fill_between((found.start, found.stop), mean - error, mean + error, color=MEAN_COLOUR, alpha=0.2, lw=0, zorder=1)
+            axes.fill_between(
+                (found.start, found.stop), mean - error, mean + error, color=MEAN_COLOUR, alpha=0.2, lw=0, zorder=1
+            )
         known = f" \u00b1 {error:.2g}" if np.isfinite(error) else ""
         axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
                     label=f"mean from {found.start:.4g} to {found.stop:.4g} s: {mean:.4g}{known}{found.unit}")
@@ -45,8 +48,8 @@ def padded(values):
 
 
 def figure_of(run):
-    """All measured q* against time with their running mean, and the mean with its error that run.log has over its time; where a
-    start carries so much that this hardly shows, once more below, enlarged."""
+    """All measured q* against time with their running mean, and the mean with its error that run.log has over its time;
+    where a start carries so much that this hardly shows, once more below, enlarged."""
     series = run.series
     name, label = "q_star", r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
     if name not in series:
@@ -72,8 +75,10 @@ def figure_of(run):
         panels[1, 0].set(xlim=(found.start, max(found.stop, found.start + 1e-3 * end)))
         panels[1, 0].set_title("the averaging window, enlarged", fontsize=10)
     panels[-1, 0].set_xlabel("time $t$ [s]")
-    panels[0, 0].legend(frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
-                        handlelength=1.6)
+    panels[0, 0].legend(
+        frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
+        handlelength=1.6,
+    )
     figure.suptitle(run.name, fontsize=11)
     figure.align_ylabels()
     return figure
