@@ -128,7 +128,7 @@ TEST(DriveWarnings, OfOneShieldsNumberForSeveralDensities) {
   c.grains[1].fixed = false;
   c.gravity.slope = 0.0;  // no stress, no number
   EXPECT_EQ(only_warning(c), "");
-  c.fluid.mean_velocity = coupling::MeanVelocityKeys{.velocity = 0.3, .response_time = 1.0};
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.3, .response_time = 1.0};
   EXPECT_TRUE(contains(only_warning(c), "for grains.0")) << only_warning(c);
 }
 
