@@ -99,7 +99,7 @@ public:
   // recording: also sums by height what the fluid gives to bodies (momentum_by_height()).
   void begin_step(bool recording = false);
   BodySlot add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
-  void remove(BodySlot slot);                                                    // of a sphere
+  void remove(BodySlot slot);                                                    // removes a sphere
   void move(BodySlot slot, const BodyMotion& motion);
   void remap(BodySlot slot, const Vec3& centre);
   void move_solid(int solid, const SolidMotion& motion);

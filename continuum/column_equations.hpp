@@ -69,7 +69,7 @@ public:
 private:
   void find_pressures() const;
   void find_fluxes() const;
-  void find_flux_between(int lower) const;  // of the face above that cell
+  void find_flux_between(int lower) const;  // finds that of the face above the cell
   double upwinded_fraction(int lower) const;
   double fraction_around(std::size_t cell) const;
   double drag_speed(double along, double drift) const;  // m/s, of Re_d

@@ -75,7 +75,7 @@ public:
   std::int64_t cells() const override { return 0; }
   std::int64_t grain_steps_per_step() const override { return 0; }
 
-  const std::vector<double>& unknowns() const { return unknowns_; }  // as ColumnEquations has them
+  const std::vector<double>& unknowns() const { return unknowns_; }  // in the order of ColumnEquations
   const ColumnEquations& equations() const { return equations_; }
 
 private:

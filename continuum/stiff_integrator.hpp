@@ -33,7 +33,7 @@ public:
   // Carries the unknowns on by `duration` (s). Throws RunError where the integrator gets no further.
   void advance(std::span<double> unknowns, double duration);
 
-  std::int64_t steps() const { return steps_; }  // of all intervals so far
+  std::int64_t steps() const { return steps_; }  // steps of all intervals so far
 
 private:
   struct Memory;

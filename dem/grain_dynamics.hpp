@@ -147,7 +147,7 @@ public:
   }
   const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
-  const Decomposition& decomposition() const { return decomposition_; }  // as it is now, if cuts move
+  const Decomposition& decomposition() const { return decomposition_; }  // the present one, if cuts move
   const std::vector<Plane>& walls() const { return planes_; }            // where they are now
   double time() const { return static_cast<double>(steps_done_) * parameters_.time_step; }  // s, since the start
   double largest_radius() const { return largest_radius_; }                                 // m, over all ranks
@@ -179,14 +179,14 @@ public:
   // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;  // N, of all grains on each wall, then each solid, by contacts and lubrication
   std::int64_t contact_count() const;     // touching pairs of grains
-  double largest_overlap() const;         // of two grains, not both held, in diameters of the smaller
+  double largest_overlap() const;         // largest of two grains, not both held, in diameters of the smaller
   double kinetic_energy() const;          // J, with rotation
   Vec3 momentum() const;                  // kg m/s
   double largest_speed() const;           // m/s
   double largest_free_speed() const;      // m/s, of grains that are free to move
   double largest_acceleration() const;    // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
-  double moving_share(double speed) const;        // of the free grains; 0 if there are none
+  double moving_share(double speed) const;        // share of the free grains; 0 if there are none
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
   std::int64_t restless_count(double speed, double acceleration) const;
 

@@ -63,7 +63,7 @@ struct GrainContext {
   Force submerged_weight = {};
   Force buoyancy = {};  // the part of it that the fluid's load contains
 
-  GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // of ids
+  GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // number of ids
   std::vector<HeldGrains> held() const;
   bool any_free() const;
   bool any_clumps() const;

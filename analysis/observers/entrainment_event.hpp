@@ -25,7 +25,7 @@ struct Entraining {
   // Share of the couple in the fluid's torque, sum T_C / sum T_F until the onset. Not a number without a hinge, or if
   // the fluid did not push the way the grain went.
   double couple_share() const;
-  double largest_torque_ratio() const;  // of T_F to T_c until the onset; not a number without a hinge or a T_c above 0
+  double largest_torque_ratio() const;  // T_F/T_c until the onset; not a number without a hinge or a T_c above 0
 };
 
 Entraining entraining_of(const EntrainedGrain& grain, const GrainRing& ring, double moving_speed);

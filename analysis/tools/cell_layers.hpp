@@ -17,7 +17,7 @@ public:
 
   int count() const { return count_; }
   int planes() const { return planes_; }
-  int first_plane(int layer) const {  // of layer count(): one past the last
+  int first_plane(int layer) const {  // for layer count() one past the last
     return static_cast<int>((2L * layer * planes_ + count_) / (2L * count_));
   }
   double bottom(int layer) const { return first_plane(layer) * spacing_; }  // m

@@ -33,7 +33,7 @@ public:
 
   // A new slot, covering nothing yet, for a body that has none. radius: in cells.
   BodySlot add(GlobalId id, double radius, GlobalId clump = -1);
-  void remove(BodySlot slot);  // of a sphere; gives up the body's cells
+  void remove(BodySlot slot);  // removes a sphere and gives up its cells
 
   // Slots 0, 1, ... for solids, before any other body; their cells are those that they claim and do not give up again.
   // Their ids are below those of all others, and rise with the slot: first those that stand still, then those that
@@ -53,7 +53,7 @@ public:
   // True if a body covers a cell, which is in memory or in the layer around it.
   bool covers(const Index3& local) const;
 
-  const OccludedPatches& occluded_patches() const { return occluded_patches_; }  // of the bodies' present cells
+  const OccludedPatches& occluded_patches() const { return occluded_patches_; }  // those of the bodies' present cells
 
 private:
   static constexpr double nowhere = -1e8;  // no body's centre is below this

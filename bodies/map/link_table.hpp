@@ -84,7 +84,7 @@ struct LinkStream {
   std::vector<LinkCrossing> crossing;
 
   void resize(std::size_t size);
-  void fill_up(std::size_t end, std::size_t copies);  // of the last link before `end`, from there on
+  void fill_up(std::size_t end, std::size_t copies);  // copies the last link before `end`, from there on
 
   // Prefetches these links. Not inlined, because the compiler would drop it as having no effect.
   [[gnu::noinline]] void prefetch(std::size_t first, std::size_t count) const;

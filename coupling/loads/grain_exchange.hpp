@@ -29,9 +29,9 @@ public:
   static constexpr std::size_t first_shared = 18, shared = 5;
 
   Vector link_position() const { return vector(0); }  // the place its cells stand for, m
-  Vector last_force() const { return vector(3); }     // of the last exchange, N
+  Vector last_force() const { return vector(3); }     // force of the last exchange, N
   Vector last_torque() const { return vector(6); }    // N m
-  Vector earlier_force() const { return vector(9); }  // of the one before
+  Vector earlier_force() const { return vector(9); }  // force of the one before, N
   Vector earlier_torque() const { return vector(12); }
 
   // Number of exchanges so far, at most 2.

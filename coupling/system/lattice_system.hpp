@@ -65,7 +65,7 @@ public:
 
   const lbm::Fluid<Real>& fluid() const { return fluid_; }
   const bodies::Bodies<Real>& bodies() const { return bodies_; }
-  const dem::GrainDynamics& grains() const { return *grains_; }  // where there are any
+  const dem::GrainDynamics& grains() const { return *grains_; }  // only where there are any
   double mass_owed() const;  // to the fluid by grains and moving solids, lattice units; collective
   typename SolidBodies<Real>::Loads solid_loads() const { return solid_bodies_.loads(); }  // collective
 

@@ -59,7 +59,7 @@ public:
   bool empty() const { return clumps_.empty(); }
   std::size_t size() const { return clumps_.size(); }
   const Clump& operator[](std::size_t n) const { return clumps_[n]; }
-  std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // of the first member, in the store
+  std::size_t first_slot(std::size_t n) const { return first_slot_[n]; }  // slot of the first member in the store
 
   // Replaces all clumps; their ids must ascend. find_members() and compute_body_forces() must follow.
   void replace(std::vector<Clump> clumps) { clumps_ = std::move(clumps); }

@@ -195,7 +195,7 @@ struct Case {
 bool has_fluid(SystemKind system);
 bool has_fluid(const Case& c);                         // system: resolved or fluid
 bool has_grains(SystemKind system);                    // true if a case gives its grains one by one
-continuum::SystemParameters column_of(const Case& c);  // of system: continuum
+continuum::SystemParameters column_of(const Case& c);  // the column of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
 
@@ -204,23 +204,23 @@ Index3 cells_of(const DomainCase& domain);  // size over spacing
 double spacing_below(const DomainCase& domain, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s
-std::int64_t grain_steps(const Case& c);          // of a step of the fluid; of dry grains, of one step_time()
+std::int64_t grain_steps(const Case& c);          // sub-steps in a step of the fluid; of dry grains in one step_time()
 double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
 double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
-Units units_of(const Case& c);                    // of a run with a fluid
+Units units_of(const Case& c);                    // units of a run with a fluid
 double relaxation_time(const Case& c);            // BGK, without the subgrid model
 double bulk_relaxation_time_for(const Case& c);   // tau_b where the case does not give it; 0: that of the shear
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
-std::int64_t grain_count(const Case& c);           // of all populations
+std::int64_t grain_count(const Case& c);           // grains of all populations
 std::int64_t grain_rows(const Case& c);            // ids that they take: a clump as many as it has members
 bool measures_grain_stress(const Case& c);         // true if the stress of the fluid on every grain is measured
 double largest_diameter(const Case& c);            // m; 0 without grains
 double largest_extent(const Case& c);              // m, the same with clumps as they are long
 double smallest_diameter(const Case& c);           // m; 0 without grains
 double grain_volume(const Case& c);                // m^3, of all grains
-model_fluid::MeanGrain mean_grain(const Case& c);  // of all grains
+model_fluid::MeanGrain mean_grain(const Case& c);  // mean of all grains
 model_fluid::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);

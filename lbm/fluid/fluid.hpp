@@ -88,7 +88,7 @@ public:
 
   // Post-collision populations of every owned cell, zero in solid ones, and the walls' state. Collective.
   void save(ArchiveWriter& archive) const;
-  void load(ArchiveReader& archive);  // as load_populations(), and the walls' state
+  void load(ArchiveReader& archive);  // reads populations, as load_populations(), and the walls' state
   // The populations alone, of a fluid in the same box with whatever walls and force. Throws InputError where the box or
   // the precision differs.
   void load_populations(ArchiveReader& archive);
