@@ -45,8 +45,8 @@ public:
 private:
   template <IsObserverKeys... Keys>
   using OptionalKeys = std::tuple<std::optional<Keys>...>;
-  OptionalKeys<FluidStatisticsKeys, ProbesKeys, TransportRateKeys, FractionalTransportKeys, BedSurfaceKeys, GrainProfilesKeys, StressBalanceKeys,
-               PopulationLoadsKeys, TracksKeys, EntrainmentKeys>
+  OptionalKeys<FluidStatisticsKeys, ProbesKeys, TransportRateKeys, FractionalTransportKeys, BedSurfaceKeys,
+               GrainProfilesKeys, StressBalanceKeys, PopulationLoadsKeys, TracksKeys, EntrainmentKeys>
       all_;
 };
 

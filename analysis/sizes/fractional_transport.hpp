@@ -71,9 +71,9 @@ public:
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;  // the three median sizes and the armouring ratio
 
-  // edges (m), one more than classes; d50 (m: of bed, surface, load); by class: diameter (m, of an empty one the geometric mean of its edges), density
-  // (kg/m^3), bed_share, surface_share and _error, load_share, q_s and q_s_error (m^2/s), in a fluid q_star and
-  // q_star_error, moving_grains and _error.
+  // edges (m), one more than classes; d50 (m: of bed, surface, load); by class: diameter (m, of an empty one the
+  // geometric mean of its edges), density (kg/m^3), bed_share, surface_share and _error, load_share, q_s and q_s_error
+  // (m^2/s), in a fluid q_star and q_star_error, moving_grains and _error.
   std::vector<Profile> profiles() const override;
 
 private:

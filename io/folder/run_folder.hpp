@@ -65,7 +65,7 @@ public:
 
   bool has_checkpoint() const { return !steps_of_checkpoints().empty(); }
 
-  // Also where they have been removed since, as far as that can still be seen.
+  // True also where they have been removed since, as far as that can still be seen.
   bool has_had_checkpoint() const;
 
   // The checkpoints to go on from, the best first: the latest, as far as that is known, then those before it from new

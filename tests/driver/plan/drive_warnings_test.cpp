@@ -108,8 +108,8 @@ TEST(DriveWarnings, OfAFlowUphill) {
   EXPECT_TRUE(contains(only_warning(c), "consider gravity.vector: [0.2, 0, -9.8].")) << only_warning(c);
 }
 
-// Two thirds glass and one third of 1500 kg/m^3, all of 5 mm: the mean density is 2200 kg/m^3, and at the same stress the
-// numbers are as 1/1550 to 1/1200 to 1/500.
+// Two thirds glass and one third of 1500 kg/m^3, all of 5 mm: the mean density is 2200 kg/m^3, and at the same stress
+// the numbers are as 1/1550 to 1/1200 to 1/500.
 TEST(DriveWarnings, OfOneShieldsNumberForSeveralDensities) {
   Case c = wide_bed();
   c.grains.push_back(c.grains.front());
