@@ -67,14 +67,17 @@ ColumnState initial_state(const SystemParameters& parameters) {
   return state;
 }
 
-Profile over_z(const std::string& name, const std::string& unit, std::vector<double> values) {
+Profile over(const std::string& axis, const std::string& name, const std::string& unit, std::vector<double> values) {
   const auto n = static_cast<std::uint64_t>(values.size());
-  return {name, unit, {}, {n}, std::move(values)};
+  return {name, unit, {axis}, {}, {n}, std::move(values)};
+}
+Profile over_z(const std::string& name, const std::string& unit, std::vector<double> values) {
+  return over("z", name, unit, std::move(values));
 }
 
 // Along x.
 Profile vector_over_z(const std::string& name, const std::string& unit, const std::vector<double>& x) {
-  Profile profile{name, unit, {"x", "y", "z"}, {static_cast<std::uint64_t>(x.size()), 3}, {}};
+  Profile profile{name, unit, {"z"}, {"x", "y", "z"}, {static_cast<std::uint64_t>(x.size()), 3}, {}};
   for (const double value : x) profile.values.insert(profile.values.end(), {value, 0.0, 0.0});
   return profile;
 }
@@ -290,10 +293,10 @@ void ContinuumSystem::add_creep(std::vector<Profile>& profiles) const {
                     static_cast<double>(i) * creep_stress_->spacing);
     ratio.push_back(creep_stress_->ratio(i));
   }
-  profiles.push_back(over_z("creep_depth", "m", depth));
-  profiles.push_back(over_z("creep_stress_ratio", "1", ratio));
-  profiles.push_back(over_z("creep_fluidity", "1/s", creep_->fluidity));
-  profiles.push_back(over_z("creep_velocity", "m/s", creep_->grain_velocity));
+  profiles.push_back(over("creep_depth", "creep_depth", "m", depth));
+  profiles.push_back(over("creep_depth", "creep_stress_ratio", "1", ratio));
+  profiles.push_back(over("creep_depth", "creep_fluidity", "1/s", creep_->fluidity));
+  profiles.push_back(over("creep_depth", "creep_velocity", "m/s", creep_->grain_velocity));
 }
 
 void ContinuumSystem::save(ArchiveWriter& archive) const {

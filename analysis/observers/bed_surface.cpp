@@ -118,8 +118,8 @@ std::vector<Diagnostic> BedSurface::results() const {
 
 std::vector<Profile> BedSurface::profiles() const {
   const std::vector<std::uint64_t> shape{surface_sums_.size()};
-  Profile x{"x", "m", {}, shape, {}}, mean{"static_surface", "m", {}, shape, {}};
-  Profile latest{"latest_static_surface", "m", {}, shape, pixels_.surface()};
+  Profile x{"x", "m", {"x"}, {}, shape, {}}, mean{"static_surface", "m", {"x"}, {}, shape, {}};
+  Profile latest{"latest_static_surface", "m", {"x"}, {}, shape, pixels_.surface()};
   latest.values.resize(surface_sums_.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
     x.values.push_back((static_cast<double>(c) + 0.5) * pixels_.column_width());

@@ -9,17 +9,19 @@ namespace {
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), v.data(), v.data() + 3); }
 
-Profile vectors(const std::string& name, const std::string& unit) { return {name, unit, {"x", "y", "z"}, {0, 3}, {}}; }
+Profile vectors(const std::string& name, const std::string& unit, const std::string& axis) {
+  return {name, unit, {axis}, {"x", "y", "z"}, {0, 3}, {}};
+}
 
 void set_length(Profile& array) { array.shape[0] = array.values.size() / 3; }
 
 void add_states(Event& event, const GrainRing& ring) {
-  Profile time{"time", "s", {}, {ring.size()}, {}};
+  Profile time{"time", "s", {"time"}, {}, {ring.size()}, {}};
   for (const GrainSample& sample : ring) time.values.push_back(sample.time);
   event.arrays.push_back(std::move(time));
   for (int q = 0; q < GrainRecord::quantities; ++q) {
     const auto& [name, unit] = recorded_quantities[static_cast<std::size_t>(q)];
-    Profile array = vectors(name, unit);
+    Profile array = vectors(name, unit, "time");
     for (const GrainSample& sample : ring) add(array.values, sample[static_cast<GrainRecord::Quantity>(q)]);
     set_length(array);
     event.arrays.push_back(std::move(array));
@@ -27,9 +29,9 @@ void add_states(Event& event, const GrainRing& ring) {
 }
 
 void add_contacts(Event& event, const GrainRing& ring) {
-  WholeNumbers number{"contact_sample", {}}, partner{"contact_partner", {}};
-  Profile point = vectors("contact_point", "m"), place = vectors("contact_partner_position", "m"),
-          force = vectors("contact_force_each", "N");
+  WholeNumbers number{"contact_sample", "contact", {}}, partner{"contact_partner", "contact", {}};
+  Profile point = vectors("contact_point", "m", "contact"), place = vectors("contact_partner_position", "m", "contact"),
+          force = vectors("contact_force_each", "N", "contact");
   for (std::size_t n = 0; n < ring.size(); ++n)
     for (const Touch& touch : ring[n].touches) {
       const Vec3 centre = ring[n][GrainRecord::position];
@@ -48,15 +50,15 @@ void add_contacts(Event& event, const GrainRing& ring) {
 }
 
 void add_hinge(Event& event, const Hinge& hinge, const std::vector<HingeTorques>& torques) {
-  event.numbers.push_back({"hinge_partners", {hinge.partners[0], hinge.partners[1]}});
-  Profile points = vectors("hinge_points", "m"), axis{"hinge_axis", "1", {"x", "y", "z"}, {3}, {}};
+  event.numbers.push_back({"hinge_partners", "hinge_partner", {hinge.partners[0], hinge.partners[1]}});
+  Profile points = vectors("hinge_points", "m", "hinge_partner"), axis{"hinge_axis", "1", {}, {"x", "y", "z"}, {3}, {}};
   for (const Vec3& point : hinge.points) add(points.values, point);
   set_length(points);
   add(axis.values, hinge.axis);
   event.arrays.push_back(std::move(points));
   event.arrays.push_back(std::move(axis));
   const auto of = [&](const char* name, double HingeTorques::*torque) {
-    Profile array{name, "N m", {}, {torques.size()}, {}};
+    Profile array{name, "N m", {"time"}, {}, {torques.size()}, {}};
     for (const HingeTorques& t : torques) array.values.push_back(t.*torque);
     event.arrays.push_back(std::move(array));
   };
@@ -99,9 +101,9 @@ Event event_of(const std::string& name, const EntrainedGrain& grain, const Grain
                        {"radius", "m", grain.radius},
                        {"couple_share", "1", entraining.couple_share()},
                        {"largest_torque_ratio", "1", entraining.largest_torque_ratio()}};
-  event.numbers.push_back({"id", {grain.id}});
-  Profile rest{"rest_position", "m", {"x", "y", "z"}, {3}, {}},
-      weight{"submerged_weight", "N", {"x", "y", "z"}, {3}, {}};
+  event.numbers.push_back({"id", "id", {grain.id}});
+  Profile rest{"rest_position", "m", {}, {"x", "y", "z"}, {3}, {}},
+      weight{"submerged_weight", "N", {}, {"x", "y", "z"}, {3}, {}};
   add(rest.values, grain.rest);
   add(weight.values, grain.weight);
   event.arrays = {rest, weight};

@@ -87,7 +87,7 @@ std::vector<Profile> FluidStatistics::profiles() const {
   const auto nx = static_cast<double>(cells_[0]), ny = static_cast<double>(cells_[1]);
   const auto heights = static_cast<std::uint64_t>(cells_[2]), widths = static_cast<std::uint64_t>(cells_[1]);
   const auto centres = [&](const std::string& axis, int n) {
-    Profile profile{axis, "m", {}, {static_cast<std::uint64_t>(n)}, {}};
+    Profile profile{axis, "m", {axis}, {}, {static_cast<std::uint64_t>(n)}, {}};
     for (int k = 0; k < n; ++k) profile.values.push_back((k + 0.5) * spacing_);
     return profile;
   };
@@ -96,21 +96,21 @@ std::vector<Profile> FluidStatistics::profiles() const {
     to[1].values.insert(to[1].values.end(), means.stress, means.stress + 6);
     to[2].values.push_back(means.fluid_fraction);
   };
-  const auto empty = [](const std::string& prefix, std::vector<std::uint64_t> shape) {
-    std::vector<Profile> profiles{{prefix + "velocity", "m/s", vector_names, shape, {}},
-                                  {prefix + "reynolds_stress", "m^2/s^2", symmetric_names, shape, {}},
-                                  {prefix + "fluid_fraction", "1", {}, shape, {}}};
+  const auto empty = [](const std::string& prefix, std::vector<std::string> axes, std::vector<std::uint64_t> shape) {
+    std::vector<Profile> profiles{{prefix + "velocity", "m/s", axes, vector_names, shape, {}},
+                                  {prefix + "reynolds_stress", "m^2/s^2", axes, symmetric_names, shape, {}},
+                                  {prefix + "fluid_fraction", "1", axes, {}, shape, {}}};
     profiles[0].shape.push_back(3);
     profiles[1].shape.push_back(6);
     return profiles;
   };
-  std::vector<Profile> layers = empty("", {heights});
+  std::vector<Profile> layers = empty("", {"z"}, {heights});
   for (int z = 0; z < cells_[2]; ++z) add(layers, means_of(layer(z).data(), nx * ny));
   std::vector<Profile> all{centres("z", cells_[2])};
   all.insert(all.end(), layers.begin(), layers.end());
   if (!sections_) return all;
   all.push_back(centres("y", cells_[1]));
-  std::vector<Profile> lines = empty("section_", {heights, widths});
+  std::vector<Profile> lines = empty("section_", {"z", "y"}, {heights, widths});
   for (int bin = 0; bin < bins(); ++bin)
     add(lines, means_of(sums_.data() + static_cast<std::size_t>(bin) * quantities, nx));
   all.insert(all.end(), lines.begin(), lines.end());

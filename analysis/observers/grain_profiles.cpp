@@ -103,11 +103,12 @@ std::vector<Diagnostic> GrainProfiles::results() const {
 
 std::vector<Profile> GrainProfiles::profiles() const {
   const auto n = static_cast<std::uint64_t>(layers_);
-  Profile z{"z", "m", {}, {n}, {}}, fraction{"solid_fraction", "1", {}, {n}, {}};
-  Profile velocity{"velocity", "m/s", vector_names, {n, 3}, {}}, volume_flux{"flux", "m/s", vector_names, {n, 3}, {}};
-  Profile temperature{"granular_temperature", "m^2/s^2", {}, {n}, {}};
-  Profile contact_stress{"contact_stress", "Pa", tensor_names, {n, 9}, {}};
-  Profile kinetic_stress{"kinetic_stress", "Pa", symmetric_names, {n, 6}, {}};
+  Profile z{"z", "m", {"z"}, {}, {n}, {}}, fraction{"solid_fraction", "1", {"z"}, {}, {n}, {}};
+  Profile velocity{"velocity", "m/s", {"z"}, vector_names, {n, 3}, {}},
+      volume_flux{"flux", "m/s", {"z"}, vector_names, {n, 3}, {}};
+  Profile temperature{"granular_temperature", "m^2/s^2", {"z"}, {}, {n}, {}};
+  Profile contact_stress{"contact_stress", "Pa", {"z"}, tensor_names, {n, 9}, {}};
+  Profile kinetic_stress{"kinetic_stress", "Pa", {"z"}, symmetric_names, {n, 6}, {}};
   // Volume of a layer times the number of measurements.
   const double room =
       box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements()));

@@ -68,12 +68,13 @@ Records Probes::take_records() {
   for (int a = 0; a < 3; ++a) {
     std::vector<std::int64_t> along;
     for (const Index3& cell : cells_) along.push_back(cell[a]);
-    records.fixed.push_back({std::string("cell_") + "xyz"[a], std::move(along)});
+    records.fixed.push_back({std::string("cell_") + "xyz"[a], "point", std::move(along)});
   }
   const std::uint64_t times = times_.size(), points = cells_.size();
-  records.rows.push_back({"time", "s", {}, {times}, std::move(times_)});
-  records.rows.push_back({"velocity", "m/s", {"x", "y", "z"}, {times, points, 3}, std::move(velocities_)});
-  records.rows.push_back({"pressure", "Pa", {}, {times, points}, std::move(pressures_)});
+  records.rows.push_back({"time", "s", {"time"}, {}, {times}, std::move(times_)});
+  records.rows.push_back(
+      {"velocity", "m/s", {"time", "point"}, {"x", "y", "z"}, {times, points, 3}, std::move(velocities_)});
+  records.rows.push_back({"pressure", "Pa", {"time", "point"}, {}, {times, points}, std::move(pressures_)});
   times_.clear();
   velocities_.clear();
   pressures_.clear();

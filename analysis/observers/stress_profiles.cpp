@@ -216,7 +216,7 @@ std::vector<Profile> StressBalance::profiles() const {
   const auto n = static_cast<std::uint64_t>(layers.size());
   std::vector<Profile> all;
   const auto add = [&](const char* name, const char* unit, const std::vector<std::string>& components, auto values) {
-    Profile profile{name, unit, components, {n}, {}};
+    Profile profile{name, unit, {"z"}, components, {n}, {}};
     if (!components.empty()) profile.shape.push_back(components.size());
     for (std::size_t l = 0; l < layers.size(); ++l) {
       const auto& of_layer = values(l);

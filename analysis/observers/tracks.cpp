@@ -53,13 +53,14 @@ std::vector<Diagnostic> Tracks::results() const {
 Records Tracks::take_records() {
   Records records;
   if (rank_of(communicator_) != 0) return records;
-  records.fixed = {{"id", grains_}};
+  records.fixed = {{"id", "id", grains_}};
   const std::uint64_t times = times_.size();
-  records.rows.push_back({"time", "s", {}, {times}, std::move(times_)});
+  records.rows.push_back({"time", "s", {"time"}, {}, {times}, std::move(times_)});
   times_.clear();
   for (std::size_t q = 0; q < since_.size(); ++q) {
     const auto& [name, unit] = recorded_quantities[q];
-    records.rows.push_back({name, unit, {"x", "y", "z"}, {times, grains_.size(), 3}, std::move(since_[q])});
+    records.rows.push_back(
+        {name, unit, {"time", "id"}, {"x", "y", "z"}, {times, grains_.size(), 3}, std::move(since_[q])});
     since_[q].clear();
   }
   return records;

@@ -143,8 +143,8 @@ std::vector<std::string> TransportRate::remarks() const {
 
 std::vector<Profile> TransportRate::profiles() const {
   const std::span<const double> edges = velocities_[0].edges();
-  Profile edge{"velocity_edges", "m/s", {}, {edges.size()}, {edges.begin(), edges.end()}};
-  Profile density{"velocity_density", "s/m", {"x", "y", "z"}, {edges.size() - 1, 3}, {}};
+  Profile edge{"velocity_edges", "m/s", {"velocity_edges"}, {}, {edges.size()}, {edges.begin(), edges.end()}};
+  Profile density{"velocity_density", "s/m", {"velocity_bin"}, {"x", "y", "z"}, {edges.size() - 1, 3}, {}};
   for (std::size_t b = 1; b < edges.size(); ++b)
     for (const Histogram& velocity : velocities_) {
       const auto all = static_cast<double>(std::max<std::int64_t>(1, velocity.total()));

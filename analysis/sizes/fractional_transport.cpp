@@ -235,14 +235,15 @@ std::vector<std::string> FractionalTransport::remarks() const {
 std::vector<Profile> FractionalTransport::profiles() const {
   const Findings found = findings();
   const std::uint64_t classes = classes_.count();
-  std::vector<Profile> profiles{{"edges", "m", {}, {classes + 1}, classes_.edges()},
+  std::vector<Profile> profiles{{"edges", "m", {"edges"}, {}, {classes + 1}, classes_.edges()},
                                 {"d50",
                                  "m",
+                                 {},
                                  {"bed", "surface", "load"},
                                  {3},
                                  {bed_d50(), surface_d50_.mean(), median_diameter(load_sums_, bed_diameter_)}}};
   const auto add = [&](const char* name, const char* unit, const std::vector<double>& values) {
-    profiles.push_back({name, unit, {}, {classes}, values});
+    profiles.push_back({name, unit, {"diameter"}, {}, {classes}, values});
   };
   add("diameter", "m", found.diameter);
   add("density", "kg/m^3", found.density);

@@ -110,10 +110,10 @@ std::vector<Diagnostic> Hops::results() const {
 
 std::vector<Profile> Hops::profiles() const {
   const auto values = [](auto numbers) { return std::vector<double>(numbers.begin(), numbers.end()); };
-  std::vector<Profile> profiles{{"hop_length_edges", "m", {}, {}, values(lengths_.edges())},
-                                {"hop_length_count", "1", {}, {}, values(lengths_.counts())},
-                                {"hop_time_edges", "s", {}, {}, values(times_.edges())},
-                                {"hop_time_count", "1", {}, {}, values(times_.counts())}};
+  std::vector<Profile> profiles{{"hop_length_edges", "m", {"hop_length_edges"}, {}, {}, values(lengths_.edges())},
+                                {"hop_length_count", "1", {"hop_length_bin"}, {}, {}, values(lengths_.counts())},
+                                {"hop_time_edges", "s", {"hop_time_edges"}, {}, {}, values(times_.edges())},
+                                {"hop_time_count", "1", {"hop_time_bin"}, {}, {}, values(times_.counts())}};
   for (Profile& profile : profiles) profile.shape = {profile.values.size()};
   return profiles;
 }

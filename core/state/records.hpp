@@ -13,7 +13,7 @@ namespace thalweg {
 
 // Whole numbers without a unit, e.g. ids.
 struct WholeNumbers {
-  std::string name;
+  std::string name, axis;  // axis: of its dimension, as those of Profile
   std::vector<std::int64_t> values;
 };
 

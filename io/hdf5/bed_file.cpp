@@ -4,6 +4,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/rows_by_id.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
+#include "io/hdf5/labelled_arrays.hpp"
 #include "io/vtk/grain_fields.hpp"
 
 #include <fmt/format.h>
@@ -43,13 +44,17 @@ class BedWriter {
 public:
   // share: the grains whose rows this rank writes.
   BedWriter(MPI_Comm communicator, const std::filesystem::path& path, const RowRange& share)
-      : archive_(communicator, path), first_(rank_of(communicator) == 0), share_(share) {}
+      : archive_(communicator, path), labeller_(archive_), first_(rank_of(communicator) == 0), share_(share) {}
 
   // values: of the grains of the share.
   template <typename Number>
   void column(const std::string& name, const char* unit, const std::vector<Number>& values, std::uint64_t width = 1) {
     archive_.write("grains/" + name, values, box_of(share_, width));
-    archive_.attribute("grains/" + name + "/unit", std::string(unit));
+    const std::vector<std::uint64_t> rows{share_.box().global_shape[0]};
+    if (width == 1)
+      labeller_.label("grains", name, rows, {unit, {"id"}, {}});
+    else
+      labeller_.label("grains", name, {rows[0], width}, {unit, {"id"}, {"x", "y", "z"}});
   }
   void scalars(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double BedRow::*field) {
     std::vector<double> values;
@@ -65,12 +70,17 @@ public:
   void triple(const std::string& name, const char* unit, std::vector<Number> values) {
     if (!first_) values.clear();
     archive_.write("bed/" + name, values, {{3}, {0}, {values.size()}});
-    archive_.attribute("bed/" + name + "/unit", std::string(unit));
+    labeller_.label("bed", name, {3}, {unit, {}, {"x", "y", "z"}});
   }
   Hdf5Writer& archive() { return archive_; }
+  void close() {
+    labeller_.name_dimensions();
+    archive_.close();
+  }
 
 private:
   Hdf5Writer archive_;
+  ArrayLabeller labeller_;
   bool first_;
   RowRange share_;
 };
@@ -116,7 +126,7 @@ void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, co
   writer.vectors(rows, "position", "m", &BedRow::position);
   writer.vectors(rows, "velocity", "m/s", &BedRow::velocity);
   writer.vectors(rows, "angular_velocity", "rad/s", &BedRow::angular_velocity);
-  writer.archive().close();
+  writer.close();
 }
 
 RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t rows, const Ranks& ranks) {

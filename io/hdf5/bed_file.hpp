@@ -3,8 +3,8 @@
 // HDF5. Group `bed`: attributes format, time (s) and disk_thickness (m; 0: spheres), datasets box (m) and periodic (0
 // or 1 along x, y, z). Group `grains`, one row a grain in order of id: id, radius, density, position, velocity,
 // angular_velocity; where there are clumps, also clump: the id of the clump a member belongs to, -1 for others. A clump
-// is the union of its members; their density is its own. Every dataset has its unit as attribute. The bytes depend on
-// the grains alone, not on the number of ranks.
+// is the union of its members; their density is its own. Every dataset has its labels (labelled_arrays.hpp). The bytes
+// depend on the grains alone, not on the number of ranks.
 #pragma once
 
 #include "core/parallel/ranks.hpp"

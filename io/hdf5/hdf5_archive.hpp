@@ -12,10 +12,25 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace thalweg::io {
+
+// Data sets with one dimension that name dimensions of others, by their paths, as netCDF-4 does.
+struct DimensionScales {
+  struct Scale {
+    std::string path;
+    std::uint64_t length;
+    bool is_coordinate;  // false: its values mean nothing
+  };
+  std::vector<Scale> scales;
+  std::vector<std::pair<std::string, std::vector<std::string>>> of_arrays;  // of every dimension of an array, the scale
+};
 
 // Writes to `path` + ".partial" and gives the file its name in close(), so that the name never stands for half a file.
 // Paths are "group/name"; an attribute "group/name" is kept on the group, and
@@ -35,6 +50,11 @@ public:
   void attribute(const std::string& path, double value) override;
   void attribute(const std::string& path, std::int64_t value) override;
   void attribute(const std::string& path, const std::string& value) override;
+
+  MPI_Comm communicator() const;
+
+  // Names the dimensions of data sets that have been written. Once for a scale.
+  void name_dimensions(const DimensionScales& scales);
 
   void close();  // writes what is left and gives the file its name
 

@@ -5,6 +5,7 @@
 #include "io/hdf5/checksum.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
 #include "io/hdf5/hdf5_dataset.hpp"
+#include "io/hdf5/scale_attributes.hpp"
 
 #include <fmt/format.h>
 
@@ -150,6 +151,17 @@ void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
   H5Tset_size(type, text.size() + 1);  // a fixed length, with the closing zero: variable lengths live in a heap
   H5Tset_cset(type, H5T_CSET_UTF8);
   file_->attribute(path, type, type, text.c_str());
+}
+
+MPI_Comm Hdf5Writer::communicator() const { return file_->communicator; }
+
+void Hdf5Writer::name_dimensions(const DimensionScales& scales) {
+  for (const DimensionScales::Scale& scale : scales.scales) {
+    attribute(scale.path + "/CLASS", std::string("DIMENSION_SCALE"));
+    attribute(scale.path + "/NAME", name_of_scale(scale));
+  }
+  file_->tables += bytes_of_attributes(scales);
+  file_->agree(write_scale_attributes(file_->file, scales));
 }
 
 void Hdf5Writer::close() {

@@ -1,10 +1,7 @@
 #include "io/hdf5/profile_file.hpp"
 
-#include "core/state/whole_dataset.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include "io/hdf5/labelled_arrays.hpp"
 
 namespace thalweg::io {
 
@@ -12,15 +9,11 @@ void write_profiles(MPI_Comm communicator, const std::filesystem::path& path, do
                     const ProfileGroups& groups) {
   Hdf5Writer file(communicator, path);
   file.attribute("time", time);
-  file.attribute("time_unit", std::string("s"));
+  file.attribute("time_units", std::string("s"));
+  ArrayLabeller arrays(file);
   for (const auto& [name, profiles] : groups)
-    for (const Profile& profile : profiles) {
-      const std::string location = name + "/" + profile.name;
-      write_whole(file, communicator, location, std::span<const double>(profile.values), profile.shape);
-      file.attribute(location + "/unit", profile.unit);
-      if (!profile.components.empty())
-        file.attribute(location + "/components", fmt::format("{}", fmt::join(profile.components, " ")));
-    }
+    for (const Profile& profile : profiles) arrays.write(name, profile);
+  arrays.name_dimensions();
   file.close();
 }
 

@@ -5,9 +5,9 @@
 #include "core/parallel/on_first_rank.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
+#include "io/hdf5/labelled_arrays.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -45,29 +45,16 @@ ArrayBox whole(const std::vector<std::uint64_t>& shape) {
   return {shape, std::vector<std::uint64_t>(shape.size(), 0), shape};
 }
 
-// group: empty, or with a slash at its end.
-void write(Hdf5Writer& file, const std::string& group, const WholeNumbers& numbers) {
-  file.write(group + numbers.name, std::span<const std::int64_t>(numbers.values), whole({numbers.values.size()}));
-  file.attribute(group + numbers.name + "/unit", std::string("1"));
-}
-
-void write(Hdf5Writer& file, const std::string& group, const Profile& array) {
-  file.write(group + array.name, std::span<const double>(array.values), whole(array.shape));
-  file.attribute(group + array.name + "/unit", array.unit);
-  if (!array.components.empty())
-    file.attribute(group + array.name + "/components", fmt::format("{}", fmt::join(array.components, " ")));
-}
-
-void write(Hdf5Writer& file, const Event& event) {
+void write(Hdf5Writer& file, ArrayLabeller& arrays, const Event& event) {
   const std::string group = event.name + "/";
   file.attribute(group + "time", event.time);
-  file.attribute(group + "time_unit", std::string("s"));
+  file.attribute(group + "time_units", std::string("s"));
   for (const Diagnostic& diagnostic : event.diagnostics) {
     file.attribute(group + diagnostic.name, diagnostic.value);
-    file.attribute(group + diagnostic.name + "_unit", diagnostic.unit);
+    file.attribute(group + diagnostic.name + "_units", diagnostic.unit);
   }
-  for (const WholeNumbers& numbers : event.numbers) write(file, group, numbers);
-  for (const Profile& array : event.arrays) write(file, group, array);
+  for (const WholeNumbers& numbers : event.numbers) arrays.write(event.name, numbers);
+  for (const Profile& array : event.arrays) arrays.write(event.name, array);
 }
 
 std::size_t bytes_of(const Records& records) {
@@ -191,9 +178,11 @@ void RecordParts::keep(const Records& records) {
 void RecordParts::write_part(std::int64_t step) {
   make_folder(folder_);
   Hdf5Writer file(MPI_COMM_SELF, part(step));
-  for (const WholeNumbers& numbers : kept_.fixed) io::write(file, "", numbers);
-  for (const Profile& array : kept_.rows) io::write(file, "", array);
-  for (const Event& event : kept_.events) io::write(file, event);
+  ArrayLabeller arrays(file);
+  for (const WholeNumbers& numbers : kept_.fixed) arrays.write("", numbers);
+  for (const Profile& array : kept_.rows) arrays.write("", array);
+  for (const Event& event : kept_.events) io::write(file, arrays, event);
+  arrays.name_dimensions();
   file.close();
   kept_.rows.clear();
   kept_.events.clear();

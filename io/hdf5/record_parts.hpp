@@ -2,7 +2,7 @@
 //
 // A part, part_<step>.h5, holds what was added up to its step and is in no earlier part: the `fixed` numbers, `rows` as
 // arrays whose first dimension is that of time, each event a group with its diagnostics and `time` as attributes (their
-// units beside them: `time_unit`). Every array has the attributes `unit` and perhaps `components`. A part gets its name
+// units beside them: `time_units`). Every array has its labels (labelled_arrays.hpp). A part gets its name
 // once it is on the disk, and before the checkpoint of its step is written: whenever a run ends, the parts up to a
 // checkpoint are whole and hold all that lies before it, and the later ones, by their names, go at a restart.
 #pragma once

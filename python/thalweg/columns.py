@@ -5,12 +5,12 @@ from thalweg.labelled import Labelled
 
 class Columns(Labelled):
     """Arrays by name; `units` has the unit of each ("1": none), `components` the names along the last axis, if any. source: where
-    they come from, for messages. axes: names of their leading axes (thalweg.labelled)."""
+    they come from, for messages. axes: names of their leading axes; named: of the axes of each array (thalweg.labelled)."""
 
-    def __init__(self, arrays, units, components=None, source="", axes=()):
+    def __init__(self, arrays, units, components=None, source="", axes=(), named=None):
         self._arrays, self.source, self.axes = dict(arrays), str(source), tuple(axes)
         self.units = {name: units.get(name, "1") for name in self._arrays}
-        self.components = dict(components or {})
+        self.components, self.named = dict(components or {}), dict(named or {})
 
     def __getitem__(self, name):
         if name not in self._arrays:

@@ -34,20 +34,20 @@ class GrainFrame:
             raise RunFolderError(f"{self.path}: there are no grains in this frame.")
         arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
                   for name, values in arrays.items()}
-        return Columns({"position": position, **arrays}, GRAIN_UNITS, source=self.path, axes=("grain",))
+        return Columns({"position": position, **arrays}, GRAIN_UNITS, source=self.path, axes=("id",))
 
     def _tensors_flat(self):
         """The same with the nine components of a tensor along one axis, all with their names."""
         arrays = {name: values.reshape(len(values), -1) if values.ndim > 1 else values for name, values in self.arrays.items()}
         components = {name: AXES[values.shape[1]] for name, values in arrays.items() if values.ndim > 1 and values.shape[1] in AXES}
-        return Columns(arrays, GRAIN_UNITS, components, self.path, ("grain",))
+        return Columns(arrays, GRAIN_UNITS, components, self.path, ("id",))
 
     def to_pandas(self):
         """A pandas.DataFrame with a row for each grain, by its id."""
         return self._tensors_flat().to_pandas()
 
     def to_xarray(self):
-        """An xarray.Dataset with the dimensions grain, axis and tensor, and the attribute `time` (s)."""
+        """An xarray.Dataset with the dimensions id, axis and tensor, and the attribute `time` (s)."""
         return self._tensors_flat().to_xarray().assign_attrs(time=self.time)
 
     def __getattr__(self, name):

@@ -1,5 +1,6 @@
 """Arrays with names, units and axes as pandas tables and xarray data sets; both packages are needed only for that."""
 import importlib
+from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
@@ -18,32 +19,40 @@ def package(name):
 
 
 class Labelled(Mapping):
-    """Arrays by name with `units` and `components`. `axes` names what their leading axes run over: ("time", "grain") of tracks. Where
-    an array of that name exists (`z`, `time`; `id` for grains), it holds the places along the axis."""
+    """Arrays by name with `units` and `components`. What their dimensions are is in `named`, from the file; where a file does not say, the
+    first are `axes`, the others are named after the array. An array that has the name of an axis holds the places along it (`z`, `time`,
+    `id`)."""
 
-    axes, units, components = (), {}, {}
-    row_axes = 1   # how many of the axes are rows of a table
+    axes, named, units, components = (), {}, {}, {}
+    row_axes = 1   # how many axes are rows of a table
 
     def coordinate(self, axis):
         """Name of the array with the places along an axis; None where there is none."""
-        name = "id" if axis == "grain" else axis
-        return name if name in self and np.ndim(self[name]) == 1 else None
+        return axis if axis in self and self.dimensions(axis) == (axis,) else None
 
     def dimensions(self, name):
-        """Names of the axes of an array; one that is not among `axes` is named after the array."""
-        shape = self[name].shape
-        ends = len(shape) - (name in self.components)
-        if any(name == self.coordinate(axis) for axis in self.axes):
-            return (next(axis for axis in self.axes if name == self.coordinate(axis)),)
-        found, free = [], list(self.axes)
-        for length, place in zip(shape[:ends], range(ends)):
-            axis = free.pop(0) if free else None
-            known = self.coordinate(axis) if axis else None
-            fits = axis is not None and (known is None or len(self[known]) == length)
-            found.append(axis if fits else f"{name}_{place}")
+        """Names of the axes of an array."""
+        if name in self.named:
+            return self.named[name]
+        ends = self[name].ndim - (name in self.components)
+        if name in self.axes and ends == 1:
+            return (name,)
+        found = (*self.axes, *(f"{name}_{place}" for place in range(len(self.axes), ends)))[:ends]
         if name in self.components:
-            found.append(COMPONENTS.get(len(self.components[name]), f"{name}_component"))
-        return tuple(found)
+            found += (COMPONENTS.get(len(self.components[name]), f"{name}_component"),)
+        return found
+
+    def rows(self):
+        """The axes whose places are the rows of a table: those of most arrays."""
+        if self.axes:
+            return tuple(self.axes[:self.row_axes])
+        found = Counter()
+        for name in self:
+            dimensions = self.dimensions(name)
+            places = dimensions[:len(dimensions) - (name in self.components)]
+            if len(places) >= self.row_axes and name not in places:
+                found[places[:self.row_axes]] += 1
+        return found.most_common(1)[0][0] if found else ()
 
     def to_xarray(self):
         """An xarray.Dataset with named dimensions, coordinates where there are any, and the attribute `units` of each variable."""
@@ -59,10 +68,10 @@ class Labelled(Mapping):
         return xarray.Dataset(variables, coordinates)
 
     def to_pandas(self):
-        """A pandas.DataFrame with a row for each place along the first axis (of tracks and probes for each time and grain or point) and a
-        column for each component; arrays with other axes are left to to_xarray(). `attrs["units"]` has the units of the columns."""
+        """A pandas.DataFrame with a row for each place along the axis of most arrays (of tracks and probes for each time and grain or
+        point) and a column for each component; arrays with other axes are left to to_xarray(). `attrs["units"]` has the units of the columns."""
         pandas = package("pandas")
-        rows = tuple(self.axes[:self.row_axes])
+        rows = self.rows()
         columns, units, shape = {}, {}, None
         for name in self:
             dimensions = self.dimensions(name)

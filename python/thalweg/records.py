@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import MissingName
-from thalweg.hdf5 import columns_of, components_of, opened, unit_of
+from thalweg.hdf5 import arrays_in, columns_of, components_of, dimensions_in, opened, unit_of
 from thalweg.labelled import Labelled, package
 
 
@@ -22,19 +22,20 @@ class Records(Labelled):
     """Arrays by name as Columns has them, those that grow joined along time. An array is read when it is asked for, and no other
     with it."""
 
-    axes, row_axes = ("time", "grain"), 2
+    row_axes = 2
 
     def __init__(self, paths):
         self._paths, self._read = paths, {}
         self.units, self.components, self._shapes, self._rows = {}, {}, {}, set()
         with opened(paths[-1]) as file:   # as in every part
-            for name, data in file.items():
-                if isinstance(data, h5py.Dataset):
-                    self.units[name], self._shapes[name] = unit_of(data), data.shape
-                    if data.dtype.kind == "f":   # what is the same throughout are whole numbers
-                        self._rows.add(name)
-                    if "components" in data.attrs:
-                        self.components[name] = components_of(data)
+            arrays = arrays_in(file)
+            self.named = dimensions_in(arrays)
+            for name, data in arrays.items():
+                self.units[name], self._shapes[name] = unit_of(data), data.shape
+                if data.dtype.kind == "f":   # what is the same throughout are whole numbers
+                    self._rows.add(name)
+                if "components" in data.attrs:
+                    self.components[name] = components_of(data)
         times = [self._array(path, "time") for path in paths]
         # A part begins where the run has gone on, and outdates what an earlier one has from there on.
         self._kept, begin = [], np.inf
@@ -78,20 +79,14 @@ class Records(Labelled):
 class Probes(Records):
     """With `position` (m) [point, axis], the centres of the cells; spacing: of the cells, m."""
 
-    axes = ("time", "point")
-
     def __init__(self, paths, spacing):
         super().__init__(paths)
         cells = np.column_stack([self[f"cell_{axis}"] for axis in "xyz"])
         self._read["position"] = (cells + 0.5) * spacing
         self.units["position"], self._shapes["position"] = "m", cells.shape
         self.components["position"] = list("xyz")
-
-    def dimensions(self, name):
-        """Names of the axes of an array; what is the same at all times has that of the points first."""
-        if name == "position":
-            return ("point", "axis")
-        return ("point",) if name.startswith("cell_") else super().dimensions(name)
+        if "cell_x" in self.named:
+            self.named["position"] = (*self.named["cell_x"], "axis")
 
 
 class Event(Columns):
@@ -99,8 +94,8 @@ class Event(Columns):
 
     def __init__(self, group):
         columns = columns_of(group)
-        super().__init__(columns, columns.units, columns.components, columns.source, ("time",))
-        self.attributes = {name: float(value) for name, value in group.attrs.items() if not name.endswith("_unit")}
+        super().__init__(columns, columns.units, columns.components, columns.source, named=columns.named)
+        self.attributes = {name: float(value) for name, value in group.attrs.items() if not name.endswith(("_units", "_unit"))}
 
 
 def next_name(name):

@@ -18,7 +18,6 @@ def face_type(boundary):
     return boundary.get("type") if isinstance(boundary, dict) else boundary
 
 
-PLACES = ("z", "y", "diameter")   # arrays of profiles.h5 with the places along an axis
 
 # Faces that exchange shear with the fluid.
 DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "slip_law_of_the_wall")
@@ -73,7 +72,7 @@ class Run:
         if not path.exists():
             return Profiles({}, path)
         with opened(path) as file:
-            return Profiles({name: columns_of(group, [axis for axis in PLACES if axis in group]) for name, group in file.items()}, path)
+            return Profiles({name: columns_of(group) for name, group in file.items()}, path)
 
     @property
     def fractional_transport(self):

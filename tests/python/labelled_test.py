@@ -21,29 +21,31 @@ class Labelled(made_up.MadeUpFolder):
                           contact_stress=[np.arange(18.0).reshape(2, 9)] * 2)
         (self.folder / "series.csv").write_text("time [s],q_star [1],bed_stress [Pa]\n0,1,2\n1,3,4\n")
         with h5py.File(self.folder / "profiles.h5", "w") as file:
-            self.write(file, "fluid_statistics/z", np.arange(4.0), "m")
-            self.write(file, "fluid_statistics/y", np.arange(5.0), "m")
-            self.write(file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "x y z")
-            self.write(file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "x y z")
-            self.write(file, "transport_rate/hop_length_edges", np.arange(4.0), "m")
+            self.write(file, "fluid_statistics/z", np.arange(4.0), "m", "z")
+            self.write(file, "fluid_statistics/y", np.arange(5.0), "m", "y")
+            self.write(file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "z axis", "x y z")
+            self.write(file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "z y axis", "x y z")
+            self.write(file, "transport_rate/hop_length_count", np.arange(4.0), "1", "hop_length_bin")
+            self.write(file, "old/z", np.arange(4.0), "m")
+            self.write(file, "old/velocity", np.arange(12.0).reshape(4, 3), "m/s", components="x y z")
         (self.folder / "tracks").mkdir()
         with h5py.File(self.folder / "tracks/part_000000000.h5", "w") as file:
-            self.write(file, "id", GRAINS, "1")
-            self.write(file, "time", np.arange(3.0), "s")
-            self.write(file, "position", np.arange(18.0).reshape(3, 2, 3), "m", "x y z")
+            self.write(file, "id", GRAINS, "1", "id")
+            self.write(file, "time", np.arange(3.0), "s", "time")
+            self.write(file, "position", np.arange(18.0).reshape(3, 2, 3), "m", "time id axis", "x y z")
         (self.folder / "probes").mkdir()
         with h5py.File(self.folder / "probes/part_000000000.h5", "w") as file:
             for n, axis in enumerate("xyz"):
-                self.write(file, f"cell_{axis}", np.array([n, 2 * n]), "1")
-            self.write(file, "time", np.arange(3.0), "s")
-            self.write(file, "pressure", np.arange(6.0).reshape(3, 2), "Pa")
+                self.write(file, f"cell_{axis}", np.array([n, 2 * n]), "1", "point")
+            self.write(file, "time", np.arange(3.0), "s", "time")
+            self.write(file, "pressure", np.arange(6.0).reshape(3, 2), "Pa", "time point")
         (self.folder / "entrainment").mkdir()
         with h5py.File(self.folder / "entrainment/part_000000000.h5", "w") as file:
             for n in (1, 2):
                 group = file.create_group(f"event_{n}")
-                group.attrs["time"], group.attrs["time_unit"], group.attrs["speed"] = float(n), "s", 0.1 * n
-                self.write(file, f"event_{n}/time", np.arange(2.0), "s")
-                self.write(file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "x y z")
+                group.attrs["time"], group.attrs["time_units"], group.attrs["speed"] = float(n), "s", 0.1 * n
+                self.write(file, f"event_{n}/time", np.arange(2.0), "s", "time")
+                self.write(file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "time axis", "x y z")
         (self.folder / "fluid").mkdir(exist_ok=True)
         self.velocity = np.arange(2 * 3 * 4 * 3.0).reshape(2, 3, 4, 3)
         made_up.write_image(self.folder / "fluid/fluid_0.vti", (0, 4, 0, 3, 0, 2), 0.5, {"velocity": self.velocity})
@@ -51,17 +53,27 @@ class Labelled(made_up.MadeUpFolder):
         self.run_folder = thalweg.Run(self.folder)
 
     @staticmethod
-    def write(file, path, values, unit, components=None):
-        file[path] = values
-        file[path].attrs["unit"] = unit
+    def write(file, path, values, unit, axes="", components=None):
+        """As the program does; without axes, as older versions did."""
+        data = file.create_dataset(path, data=values)
+        data.attrs["units" if axes else "unit"] = unit
         if components:
-            file[path].attrs["components"] = components
+            data.attrs["components"] = components
+        for dimension, axis in zip(data.dims, axes.split()):
+            if data.name.endswith(f"/{axis}"):
+                data.make_scale(axis)
+                continue
+            if axis not in data.parent:
+                length = data.shape[axes.split().index(axis)]
+                data.parent[axis] = np.arange(length)
+                data.parent[axis].make_scale(f"This is a netCDF dimension but not a netCDF variable.{length:10}")
+            dimension.attach_scale(data.parent[axis])
 
     def test_a_wrong_name_says_the_near_ones_and_all(self):
         run = self.run_folder
         for data, name, words in ((run.series, "qstar", r"series\.csv: there is no 'qstar'; did you mean q_star\? There are: time, q_star, bed_stress\."),
                                   (run.profiles["fluid_statistics"], "Velocity", r"profiles\.h5/fluid_statistics: .*did you mean velocity"),
-                                  (run.profiles, "grain_profile", r"There are: fluid_statistics, transport_rate\. analysis\.grain_profile in the case"),
+                                  (run.profiles, "grain_profile", r"There are: fluid_statistics, old, transport_rate\. analysis\.grain_profile in the case"),
                                   (run.tracks, "positions", r"tracks: there is no 'positions'; did you mean position\?"),
                                   (run.entrainment, "event_9", "did you mean event_1 or event_2|did you mean event_2 or event_1"),
                                   (run.fluid[0].arrays, "xyz", r"fluid_0\.vti: there is no 'xyz'\. There are: velocity\.")):
@@ -73,9 +85,11 @@ class Labelled(made_up.MadeUpFolder):
         profiles = self.run_folder.profiles
         self.assertEqual(profiles["fluid_statistics"].dimensions("section_velocity"), ("z", "y", "axis"))
         self.assertEqual(profiles["fluid_statistics"].dimensions("y"), ("y",))
-        self.assertEqual(profiles["transport_rate"].dimensions("hop_length_edges"), ("hop_length_edges_0",))
-        self.assertEqual(self.run_folder.tracks.dimensions("position"), ("time", "grain", "axis"))
-        self.assertEqual(self.run_folder.tracks.dimensions("id"), ("grain",))
+        self.assertEqual(profiles["transport_rate"].dimensions("hop_length_count"), ("hop_length_bin",))
+        self.assertEqual(set(profiles["transport_rate"]), {"hop_length_count"})
+        self.assertEqual((profiles["old"].dimensions("velocity"), profiles["old"].units["velocity"]), (("velocity_0", "axis"), "m/s"))
+        self.assertEqual(self.run_folder.tracks.dimensions("position"), ("time", "id", "axis"))
+        self.assertEqual(self.run_folder.tracks.dimensions("id"), ("id",))
         self.assertEqual(self.run_folder.probes.dimensions("position"), ("point", "axis"))
 
     def test_without_the_packages(self):
@@ -91,11 +105,11 @@ class Labelled(made_up.MadeUpFolder):
         self.assertEqual(series.bed_stress.attrs["units"], "Pa")
         section = run.profiles["fluid_statistics"].to_xarray().section_velocity
         self.assertEqual(float(section.sel(z=2.0, y=3.0, axis="z")), 2 * 15 + 3 * 3 + 2)
-        self.assertEqual(float(run.tracks.to_xarray().position.sel(time=1.0, axis="y").isel(grain=1)), 6 + 3 + 1)
+        self.assertEqual(float(run.tracks.to_xarray().position.sel(time=1.0, axis="y", id=17)), 6 + 3 + 1)
         self.assertEqual(run.probes.to_xarray().sizes, {"time": 3, "point": 2, "axis": 3})
         self.assertEqual(float(run.entrainment["event_2"].to_xarray().fluid_torque.sel(time=1.0, axis="x")), 6.0)
         grains = run.grains[0].to_xarray()
-        self.assertEqual(float(grains.contact_stress.sel(tensor="zx").isel(grain=1)), 9 + 6)
+        self.assertEqual(float(grains.contact_stress.sel(tensor="zx", id=17)), 9 + 6)
         fluid = run.fluid[0].to_xarray()
         self.assertEqual(float(fluid.velocity.sel(z=0.75, y=0.25, x=1.25, axis="y")), self.velocity[1, 0, 2, 1])
         self.assertEqual((fluid.time, fluid.x.attrs["units"], fluid.velocity.attrs["units"]), (0.25, "m", "m/s"))

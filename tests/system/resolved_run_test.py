@@ -94,7 +94,7 @@ analysis:
                 self.assertEqual(one[name][()].tobytes(), unseen[name][()].tobytes(), name)
         with h5py.File(self.folder / "one/profiles.h5") as profiles:
             group = profiles["stress_balance"]
-            self.assertEqual(group["total_stress"].attrs["unit"], b"Pa")
+            self.assertEqual(group["total_stress"].attrs["units"], b"Pa")
             self.assertEqual(group["drag_density"].shape, (len(group["z"]), 3))
             self.assertAlmostEqual(sum(group["thickness"][()]), 0.0396, places=12)
             # All grains are in the box: 70 spheres over its area.

@@ -26,9 +26,10 @@ constexpr int first_events = 12;
 Records seconds(int first, int end, std::vector<std::int64_t> id = {4, 7}) {
   Records records;
   if (rank_of(MPI_COMM_WORLD) != 0) return records;
-  records.fixed = {{"id", std::move(id)}};
+  records.fixed = {{"id", "id", std::move(id)}};
   const auto rows = static_cast<std::uint64_t>(end - first);
-  records.rows = {{"time", "s", {}, {rows}, {}}, {"velocity", "m/s", {"x", "y", "z"}, {rows, 2, 3}, {}}};
+  records.rows = {{"time", "s", {"time"}, {}, {rows}, {}},
+                  {"velocity", "m/s", {"time", "id"}, {"x", "y", "z"}, {rows, 2, 3}, {}}};
   for (int t = first; t < end; ++t) {
     records.rows[0].values.push_back(t);
     for (int k = 0; k < 6; ++k) records.rows[1].values.push_back(10.0 * t + k);
@@ -36,8 +37,8 @@ Records seconds(int first, int end, std::vector<std::int64_t> id = {4, 7}) {
     records.events.push_back({"event_" + std::to_string(t),
                               static_cast<double>(t),
                               {{"share", "1", 0.25}},
-                              {{"partner", {t}}},
-                              {{"force", "N", {}, {2}, {1.0 * t, 2.0 * t}}}});
+                              {{"partner", "contact", {t}}},
+                              {{"force", "N", {"time"}, {}, {2}, {1.0 * t, 2.0 * t}}}});
   }
   return records;
 }
@@ -70,7 +71,7 @@ std::vector<std::pair<std::string, std::vector<double>>> parts_in(const std::fil
     EXPECT_EQ(numbers(file, "velocity"), velocities);
     EXPECT_EQ(numbers<std::int64_t>(file, "id"), (std::vector<std::int64_t>{4, 7}));
     EXPECT_EQ(file.text_attribute("velocity/components"), "x y z");
-    EXPECT_EQ(file.text_attribute("velocity/unit"), "m/s");
+    EXPECT_EQ(file.text_attribute("velocity/units"), "m/s");
   }
   std::sort(parts.begin(), parts.end());
   MPI_Barrier(MPI_COMM_WORLD);
