@@ -78,13 +78,22 @@ ExitCode exit_code_of(Outcome outcome) {
   }
 }
 
+// Open MPI's mpirun takes every exit code but 0 for a failure, and says so after the last line of the run.
+void announce(ExitCode code) {
+  if (!std::getenv("OMPI_COMM_WORLD_SIZE")) return;
+  std::printf("exit code %d: the run was stopped in good order; what mpirun says of this code is no error\n", code);
+  std::fflush(stdout);
+}
+
 int run(const Command& command, int argc, char** argv, loop::WallClock::time_point started) {
   MpiSession session(argc, argv);
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
   FailureBarrier failures(MPI_COMM_WORLD);
   loop::Log log(prints);
   try {
-    return exit_code_of(run_case(command, MPI_COMM_WORLD, started, failures, log));
+    const ExitCode code = exit_code_of(run_case(command, MPI_COMM_WORLD, started, failures, log));
+    if (prints && code != done) announce(code);
+    return code;
   } catch (...) {
     return end_with(failure(), failures, prints);
   }
@@ -142,6 +151,7 @@ std::string answer(const Command& command) {
     case Command::Kind::create:
       return joined(write_new_case(command.experiment, command.path, measure_bandwidth()));
     case Command::Kind::info:
+      if (command.json) return info_json(command.path);
       return joined(command.csv ? info_table(command.runs) : info_report(command.path));
     case Command::Kind::stop:
       return joined({ask_to_stop(command.path)});

@@ -112,6 +112,7 @@ void add_others(CLI::App& app, Command& command) {
       ->required();
   info->add_flag("--csv", command.csv,
                  "Print a table with one row per run: every number of the summaries, with its unit");
+  info->add_flag("--json", command.json, "Print all that it shows as JSON")->excludes("--csv");
   info->final_callback([&] { command.kind = Command::Kind::info; });
   CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
   stop->add_option("RUN_FOLDER", command.path, "The run folder")->required();

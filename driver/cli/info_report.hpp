@@ -16,6 +16,11 @@ namespace thalweg::driver {
 // The report, one text a line. Throws InputError where the path is neither. Called by one rank.
 std::vector<std::string> info_report(const std::filesystem::path& path);
 
+// The same as JSON: `path`; of a run folder `state`, `summary` (summary.json, null where there is none), `last_line` of
+// its log and `checkpoint` (null where there is none): its `path`, `name`, `system`, `version`, `time` (s), `step`,
+// `time_step` (s) and `datasets`. Of a checkpoint `path` and `checkpoint`. Throws as info_report().
+std::string info_json(const std::filesystem::path& path);
+
 // Throws InputError unless it is one.
 void require_run_folder(const io::RunFolder& folder);
 

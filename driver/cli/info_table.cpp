@@ -42,7 +42,7 @@ void add_summary(const YAML::Node& summary, Table& table) {
   const YAML::Node units = summary["units"];
   for (const auto& entry : summary) {
     const std::string name = entry.first.Scalar();
-    if (name == "finished" || name == "reason" || name == "phases" || name == "units") continue;
+    if (name == "finished" || name == "reason" || name == "phases" || name == "units" || name == "provenance") continue;
     if (entry.second.IsScalar()) table.set(with_unit(name, name, units), entry.second.Scalar());
     if (!entry.second.IsMap()) continue;
     for (const auto& diagnostic : entry.second) {

@@ -25,6 +25,8 @@
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"
 #include "driver/setup/initial_state.hpp"
+#include "driver/setup/input_files.hpp"
+#include "driver/setup/provenance.hpp"
 #include "driver/setup/version.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/folder/folder_lock.hpp"
@@ -94,6 +96,10 @@ std::vector<CaseChange> changes_since(const RunPaths& paths, const Case& c, MPI_
   const std::string before = told_by_first_rank(
       communicator, [&] { return io::read_text(io::RunFolder(paths.origin).case_of(paths.checkpoints.front())); });
   std::vector<CaseChange> changes = case_changes(before, resolved_yaml(c));
+  // A surface stands there with its path from the folder.
+  std::erase_if(changes, [&](const CaseChange& change) {
+    return change.key.ends_with(".stl") && change.before == path_from(paths.origin, change.now);
+  });
   refuse_changes_of_state(changes, !has_fluid(c));
   return changes;
 }
@@ -122,7 +128,7 @@ void prepare_folder(const RunPaths& paths, const Case& c, const Command& command
     // First, because it identifies the folder.
     paths.folder.write_case(fmt::format("version {}\ncommand {}{}{}", version_text(), command.line,
                                         c.filled_in.preset.empty() ? "" : "\npreset ", c.filled_in.preset),
-                            resolved_yaml(c));
+                            resolved_yaml(with_paths_from(paths.folder.path(), c)));
     std::error_code ignored;
     fs::remove(paths.folder.summary(), ignored);  // of an earlier run
     io::make_folder(paths.folder.checkpoints());
@@ -217,6 +223,7 @@ public:
                     start_point_.run_history.since,
                     paths_.same_folder ? std::optional<double>(system_->time()) : std::nullopt);
     prepare_folder(paths_, case_, command_, system_->step(), communicator_, log);
+    identity_.provenance = provenance_of(case_, paths_.folder.path(), communicator_);
     print_header(case_, identity_, *system_, paths_.folder, start_point_, bandwidth_, communicator_, log);
     if (!lock->keeps_others_out())
       log.line(fmt::format("warning: the file system of {} has no locks: make sure that no other run writes there",

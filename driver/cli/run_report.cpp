@@ -33,6 +33,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("changed since then: {}: {} -> {}", change.key, change.before, change.now));
   for (const auto& [observer, time] : start_point.run_history.since)
     log.line(fmt::format("analysis.{}: averaging starts at {:.6g} s", observer, time));
+  for (const std::string& line : as_text(identity.provenance)) log.file_line(line);
   log.line(fmt::format("writing {}", folder.path().string()));
   if (const double delay = loop::sigcont_to_sigterm_delay(); delay > 0.0)
     log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun allows only {:.2g} s to save)",

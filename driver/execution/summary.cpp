@@ -60,6 +60,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
   for (const auto& observer : observers)
     summary.set(observer->name(), diagnostics_as_json(run_history.results_of(*observer), units));
   if (!bed.empty()) summary.set("bed", diagnostics_as_json(bed, units));
+  summary.set("provenance", as_json(identity.provenance));
   if (identity.reference) units.set("reference_diameter", "m").set("reference_density", "kg/m^3");
   summary.set("units", units);
   return summary;

@@ -3,6 +3,7 @@
 
 #include "driver/cost/memory.hpp"
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/setup/provenance.hpp"
 #include "driver/setup/run_history.hpp"
 #include "io/files/json_object.hpp"
 #include "loop/phase_shares.hpp"
@@ -25,6 +26,7 @@ struct RunIdentity {
   double memory_bound_mlups = 0.0;               // rate that the measured memory bandwidth allows; 0 without a lattice
   std::optional<MemoryUse> memory = {};          // once it has ended in good order
   std::int64_t warnings = 0;                     // about the case, printed when the run begins
+  Provenance provenance = {};                    // once the run folder is there
 };
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.

@@ -56,6 +56,11 @@ JsonObject& JsonObject::set(const std::string& name, const JsonObject& value) {
   return put(name, value.line(), value.text());
 }
 
+JsonObject& JsonObject::set_json(const std::string& name, const std::string& json) {
+  const std::string value = json.substr(0, json.find_last_not_of(" \n") + 1);
+  return put(name, value, value);
+}
+
 JsonObject& JsonObject::set(const std::string& name, const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(number(value));

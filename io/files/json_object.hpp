@@ -20,6 +20,7 @@ public:
   JsonObject& set(const std::string& name, const std::string& value);
   JsonObject& set(const std::string& name, const char* value) { return set(name, std::string(value)); }
   JsonObject& set(const std::string& name, const JsonObject& value);
+  JsonObject& set_json(const std::string& name, const std::string& json);  // a value that is JSON already
   JsonObject& set(const std::string& name, const std::vector<double>& values);
   JsonObject& set(const std::string& name, const std::vector<std::string>& values);
   JsonObject& set(const std::string& name, const std::vector<JsonObject>& values);

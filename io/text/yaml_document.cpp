@@ -289,7 +289,11 @@ void YamlDocument::lay_beneath(YamlNode& section, const YamlNode& other, const s
 }
 
 std::string YamlDocument::path_beside(const std::string& file, const std::string& key_path) const {
-  std::string path = (std::filesystem::absolute(path_).parent_path() / file).lexically_normal().string();
+  // As the system finds a path with "..": from the folder itself, not from a link to it.
+  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
+  std::error_code unknown;
+  const std::filesystem::path real = std::filesystem::weakly_canonical(folder, unknown);
+  std::string path = ((unknown ? folder : real) / file).lexically_normal().string();
   if (!is_utf8(path))
     throw error(key_path,
                 fmt::format("the name of a folder in {} is not UTF-8, and case.yaml must be; rename the folder",

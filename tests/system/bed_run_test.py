@@ -124,7 +124,7 @@ output: {series: {every: 0.02}}
         self.run_well("run", self.case, "--out", "later", "--set", self.FILE, "--set", "run={until: 0.2}")
         moved = numpy.linalg.norm(self.bed("later")["position"] - before["position"], axis=1)
         self.assertLess(moved.max(), 0.02 * 5e-3)
-        # The case kept in the run folder is valid in itself: its path of the bed file is absolute.
+        # The case kept in the run folder is valid in itself: its path of the bed file is relative to the folder.
         self.run_well("run", self.folder / "next/case.yaml", "--out", "again")
         self.assertEqual((self.folder / "again/bed.h5").read_bytes(), (self.folder / "next/bed.h5").read_bytes())
 

@@ -3,7 +3,7 @@
 
 Called by ctest: obstacle_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
-import re
+import json
 import sys
 from pathlib import Path
 
@@ -33,8 +33,7 @@ analysis: {{bed_surface: {{every: 0.05}}}}
 """
 
     def expected_by_check(self, *settings):
-        report = self.run_well("check", self.case, *settings).stdout
-        return float(re.search(r"settles at about ([\d.e-]+) m", report).group(1))
+        return json.loads(self.run_well("check", "--json", self.case, *settings).stdout)["figures"]["bed_height"]
 
     def test_has_one_height_in_check_run_and_analyze(self):
         self.run_well("run", self.case)

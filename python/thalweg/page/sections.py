@@ -198,6 +198,7 @@ def provenance(run, sessions):
     versions = list(dict.fromkeys(session.version for session in sessions))
     if len(versions) > 1:
         rows.append(("versions before", ", ".join(versions[:-1])))
+    rows += facts(summary.get("provenance") or {})
     log = run.folder / "run.log"
     if log.exists():
         rows.append(("last written", datetime.fromtimestamp(log.stat().st_mtime).astimezone().strftime("%Y-%m-%d %H:%M:%S %z")))
@@ -209,6 +210,14 @@ def provenance(run, sessions):
     return html.section("Provenance", html.table(rows))
 
 
+def facts(found):
+    """Rows of what summary.json says under `provenance`; older versions have none."""
+    rows = [(name, found[key]) for name, key in (("last session began", "started"), ("host", "host"), ("processor", "processor"),
+                                                 ("compiler", "compiler"), ("compiler flags", "compiler_flags"), ("MPI", "mpi"),
+                                                 ("HDF5", "hdf5")) if found.get(key)]
+    return rows + [(file["key"], f"{file['path']}, SHA-256 {file['sha256'] or 'not known'}") for file in found.get("inputs", ())]
+
+
 def repetition(run):
     summary, folder = run.summary or {}, shlex.quote(str(run.folder))
     ranks = summary.get("ranks", 1)
@@ -218,8 +227,9 @@ def repetition(run):
     if not summary.get("finished"):
         lines += ["# this run, on from its last checkpoint", f"{start}thalweg run {folder}/case.yaml --out {folder} --resume"]
     lines += ["# its figures and this page", f"thalweg plot all {folder}", f"thalweg report {folder}"]
-    words = ("With the same version on the same kind of processor the state has the same bits, on any number of ranks. A case that begins "
-             "from a checkpoint or a bed file needs that file as well.")
+    words = ("With the same version on the same kind of processor the state has the same bits, on any number of ranks. Beds and surfaces "
+             "that the case names, with paths from its folder, are needed as well, and the run or checkpoint that it begins from: move "
+             "them with the folder.")
     return html.section("How to repeat it", html.preformatted("\n".join(lines)), html.paragraph(words))
 
 

@@ -138,6 +138,6 @@ def result_columns(plan, runs):
     columns = {}
     for run in runs:
         for section, figures in (run.summary or {}).items():
-            if isinstance(figures, dict) and section not in ("phases", "largest", "units", "figures"):
+            if isinstance(figures, dict) and section not in ("phases", "largest", "units", "figures", "provenance"):
                 columns |= {f"{section}.{name}": None for name in figures if figure_of(figures, name) is not None}
     return list(columns)

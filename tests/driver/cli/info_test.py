@@ -4,10 +4,14 @@
 Called by ctest: info_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import csv
+import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import h5py
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 import program
@@ -30,6 +34,34 @@ class Info(ProgramTest):
         process.returncode = os.waitstatus_to_exitcode(status)
         self.assertEqual(process.returncode, 0)
         self.assertLess(used.ru_maxrss, 2**20)   # KiB
+
+    def test_json_has_what_the_text_says(self):
+        self.run_well("run", self.case)
+        text = self.run_well("info", "run").stdout
+        found = json.loads(self.run_well("info", "--json", "run").stdout)
+        self.assertEqual((found["path"], found["state"], found["summary"]), ("run", "finished", self.summary("run")))
+        self.assertEqual(found["last_line"], (self.folder / "run/run.log").read_text().splitlines()[-1])
+        self.assertIn(f"last line   {found['last_line']}\n", text)
+        path = self.last_checkpoint("run")
+        checkpoint = found["checkpoint"]
+        with h5py.File(path) as file:
+            self.assertEqual((checkpoint["time"], checkpoint["step"], checkpoint["time_step"]),
+                             tuple(file["run"].attrs[name] for name in ("time", "step", "time_step")))
+            datasets = {}
+            file.visititems(lambda name, item: datasets.update({name: list(item.shape)}) if isinstance(item, h5py.Dataset) else None)
+        self.assertEqual({entry["path"]: entry["shape"] for entry in checkpoint["datasets"]}, datasets)
+        for entry in checkpoint["datasets"]:
+            self.assertIn(entry["path"], text)
+        self.assertEqual((checkpoint["name"], checkpoint["system"]), ("tumbling grains", "grains"))
+        of_file = json.loads(self.run_well("info", "--json", path).stdout)
+        self.assertEqual(of_file.keys(), {"path", "checkpoint"})
+        self.assertEqual(of_file["checkpoint"]["datasets"], checkpoint["datasets"])
+        (self.folder / "run/summary.json").unlink()
+        shutil.rmtree(self.folder / "run/checkpoints")
+        found = json.loads(self.run_well("info", "--json", "run").stdout)
+        self.assertEqual((found["summary"], found["checkpoint"]), (None, None))
+        self.assertIn("not running: it was killed", found["state"])
+        self.assert_refused("info", "--json", "--csv", "run", words=["--csv"])
 
     def test_a_table_of_runs(self):
         self.run_well("run", self.case, "--out", "a", "--set", 'name="fast, loose"')

@@ -34,8 +34,8 @@ class Stopping(ProgramTest):
         # Open MPI's mpirun answers SIGTERM by passing it on after one second and killing after another; a busy machine
         # needs more.
         patient = os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": str(patience)}
-        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, env=patient)
+        with open(self.folder / "said", "w", encoding="utf-8") as said:
+            process = subprocess.Popen(command, cwd=self.folder, stdout=said, stderr=subprocess.PIPE, text=True, env=patient)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -117,6 +117,8 @@ class Stopping(ProgramTest):
             self.run_well("stop", "run").stdout,
         )
         self.assertEqual(process.wait(timeout=30), 4)
+        said = (self.folder / "said").read_text()
+        self.assertEqual("exit code 4: the run was stopped in good order" in said, ranks > 0)   # for mpirun, which complains of it
         self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)   # the next run is not meant

@@ -1,0 +1,53 @@
+#include "driver/setup/input_files.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace thalweg::driver {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Calls `visit` with the key and the path of each file.
+template <typename AnyCase, typename Visit>
+void for_each_input(AnyCase& c, const Visit& visit) {
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (auto& file = c.grains[n].placement.file) visit(fmt::format("grains.{}.placement.file", n), *file);
+  for (std::size_t n = 0; n < c.solids.size(); ++n)
+    if (!c.solids[n].stl.empty()) visit(fmt::format("solids.{}.stl", n), c.solids[n].stl);
+  const auto initial = [&](const char* key, auto& path) {
+    if (path && !path->empty()) visit(std::string(key), *path);
+  };
+  initial("initial.from", c.initial.from.run);
+  initial("initial.from.grains", c.initial.from.grains);
+  initial("initial.from.fluid", c.initial.from.fluid);
+}
+
+fs::path first_folder(const fs::path& path) {
+  const fs::path below = path.relative_path();
+  return below.empty() ? below : *below.begin();
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> inputs_by_key(const Case& c) {
+  std::vector<std::pair<std::string, std::string>> inputs;
+  for_each_input(c, [&](const std::string& key, const std::string& path) { inputs.emplace_back(key, path); });
+  return inputs;
+}
+
+std::string path_from(const fs::path& folder, const std::string& path) {
+  std::error_code unknown;
+  const fs::path real = fs::weakly_canonical(folder, unknown), file(path);
+  const fs::path base = unknown ? fs::absolute(folder).lexically_normal() : real;
+  if (!file.is_absolute() || first_folder(file) != first_folder(base)) return path;
+  return file.lexically_relative(base).string();
+}
+
+Case with_paths_from(const fs::path& folder, Case c) {
+  for_each_input(c, [&](const std::string&, std::string& path) { path = path_from(folder, path); });
+  return c;
+}
+
+}  // namespace thalweg::driver
