@@ -18,7 +18,6 @@ def face_type(boundary):
     return boundary.get("type") if isinstance(boundary, dict) else boundary
 
 
-
 # Faces that exchange shear with the fluid.
 DRAGGING = ("no_slip", "moving", "navier_slip", "law_of_the_wall", "slip_law_of_the_wall")
 

@@ -21,53 +21,36 @@ class Labelled(made_up.MadeUpFolder):
                           contact_stress=[np.arange(18.0).reshape(2, 9)] * 2)
         (self.folder / "series.csv").write_text("time [s],q_star [1],bed_stress [Pa]\n0,1,2\n1,3,4\n")
         with h5py.File(self.folder / "profiles.h5", "w") as file:
-            self.write(file, "fluid_statistics/z", np.arange(4.0), "m", "z")
-            self.write(file, "fluid_statistics/y", np.arange(5.0), "m", "y")
-            self.write(file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "z axis", "x y z")
-            self.write(file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "z y axis", "x y z")
-            self.write(file, "transport_rate/hop_length_count", np.arange(4.0), "1", "hop_length_bin")
-            self.write(file, "old/z", np.arange(4.0), "m")
-            self.write(file, "old/velocity", np.arange(12.0).reshape(4, 3), "m/s", components="x y z")
+            made_up.write_array(file, "fluid_statistics/z", np.arange(4.0), "m", "z")
+            made_up.write_array(file, "fluid_statistics/y", np.arange(5.0), "m", "y")
+            made_up.write_array(file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "z axis", "x y z")
+            made_up.write_array(file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "z y axis", "x y z")
+            made_up.write_array(file, "transport_rate/hop_length_count", np.arange(4.0), "1", "hop_length_bin")
+            made_up.write_array(file, "old/z", np.arange(4.0), "m")
+            made_up.write_array(file, "old/velocity", np.arange(12.0).reshape(4, 3), "m/s", components="x y z")
         (self.folder / "tracks").mkdir()
         with h5py.File(self.folder / "tracks/part_000000000.h5", "w") as file:
-            self.write(file, "id", GRAINS, "1", "id")
-            self.write(file, "time", np.arange(3.0), "s", "time")
-            self.write(file, "position", np.arange(18.0).reshape(3, 2, 3), "m", "time id axis", "x y z")
+            made_up.write_array(file, "id", GRAINS, "1", "id")
+            made_up.write_array(file, "time", np.arange(3.0), "s", "time")
+            made_up.write_array(file, "position", np.arange(18.0).reshape(3, 2, 3), "m", "time id axis", "x y z")
         (self.folder / "probes").mkdir()
         with h5py.File(self.folder / "probes/part_000000000.h5", "w") as file:
             for n, axis in enumerate("xyz"):
-                self.write(file, f"cell_{axis}", np.array([n, 2 * n]), "1", "point")
-            self.write(file, "time", np.arange(3.0), "s", "time")
-            self.write(file, "pressure", np.arange(6.0).reshape(3, 2), "Pa", "time point")
+                made_up.write_array(file, f"cell_{axis}", np.array([n, 2 * n]), "1", "point")
+            made_up.write_array(file, "time", np.arange(3.0), "s", "time")
+            made_up.write_array(file, "pressure", np.arange(6.0).reshape(3, 2), "Pa", "time point")
         (self.folder / "entrainment").mkdir()
         with h5py.File(self.folder / "entrainment/part_000000000.h5", "w") as file:
             for n in (1, 2):
                 group = file.create_group(f"event_{n}")
                 group.attrs["time"], group.attrs["time_units"], group.attrs["speed"] = float(n), "s", 0.1 * n
-                self.write(file, f"event_{n}/time", np.arange(2.0), "s", "time")
-                self.write(file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "time axis", "x y z")
+                made_up.write_array(file, f"event_{n}/time", np.arange(2.0), "s", "time")
+                made_up.write_array(file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "time axis", "x y z")
         (self.folder / "fluid").mkdir(exist_ok=True)
         self.velocity = np.arange(2 * 3 * 4 * 3.0).reshape(2, 3, 4, 3)
         made_up.write_image(self.folder / "fluid/fluid_0.vti", (0, 4, 0, 3, 0, 2), 0.5, {"velocity": self.velocity})
         made_up.write_index(self.folder / "fluid.pvd", [(0.25, "fluid/fluid_0.vti")])
         self.run_folder = thalweg.Run(self.folder)
-
-    @staticmethod
-    def write(file, path, values, unit, axes="", components=None):
-        """As the program does; without axes, as older versions did."""
-        data = file.create_dataset(path, data=values)
-        data.attrs["units" if axes else "unit"] = unit
-        if components:
-            data.attrs["components"] = components
-        for dimension, axis in zip(data.dims, axes.split()):
-            if data.name.endswith(f"/{axis}"):
-                data.make_scale(axis)
-                continue
-            if axis not in data.parent:
-                length = data.shape[axes.split().index(axis)]
-                data.parent[axis] = np.arange(length)
-                data.parent[axis].make_scale(f"This is a netCDF dimension but not a netCDF variable.{length:10}")
-            dimension.attach_scale(data.parent[axis])
 
     def test_a_wrong_name_says_the_near_ones_and_all(self):
         run = self.run_folder

@@ -25,6 +25,23 @@ analysis: {transport_rate: {from: 1.0}}
 """
 
 
+def write_array(file, path, values, unit, axes="", components=None):
+    """An array in an HDF5 file, labelled as the program does; without axes, as older versions did."""
+    data = file.create_dataset(path, data=values)
+    data.attrs["units" if axes else "unit"] = unit
+    if components:
+        data.attrs["components"] = components
+    for dimension, axis in zip(data.dims, axes.split()):
+        if data.name.endswith(f"/{axis}"):
+            data.make_scale(axis)
+            continue
+        if axis not in data.parent:
+            length = data.shape[axes.split().index(axis)]
+            data.parent[axis] = np.arange(length)
+            data.parent[axis].make_scale(f"This is a netCDF dimension but not a netCDF variable.{length:10}")
+        dimension.attach_scale(data.parent[axis])
+
+
 class MadeUpFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

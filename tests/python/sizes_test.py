@@ -38,10 +38,10 @@ class SizesTest(made_up.MadeUpFolder):
     def write(self, **changed):
         with h5py.File(self.folder / "profiles.h5", "w") as file:
             for name, (values, unit) in ARRAYS.items():
-                data = file.create_dataset(f"fractional_transport/{name}", data=np.array(changed.get(name, values)))
-                data.attrs["unit"] = unit
-            d50 = file.create_dataset("fractional_transport/d50", data=np.array([4e-3, 6e-3, 3e-3]))
-            d50.attrs["unit"], d50.attrs["components"] = "m", "bed surface load"
+                made_up.write_array(file, f"fractional_transport/{name}", np.array(changed.get(name, values)), unit,
+                                    "edges" if name == "edges" else "diameter")
+            made_up.write_array(file, "fractional_transport/d50", np.array([4e-3, 6e-3, 3e-3]), "m", "d50_component",
+                                "bed surface load")
 
     def run_(self):
         return thalweg.Run(self.folder)
@@ -63,7 +63,7 @@ class SizesTest(made_up.MadeUpFolder):
         found = self.run_().fractional_transport
         self.assertEqual(found.dimensions("q_s"), ("diameter",))
         self.assertEqual(found.dimensions("diameter"), ("diameter",))
-        self.assertEqual(found.dimensions("edges"), ("edges_0",))
+        self.assertEqual(found.dimensions("edges"), ("edges",))
 
     def test_figure(self):
         drawn = figure.figure_of(self.run_())
