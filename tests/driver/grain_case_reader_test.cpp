@@ -1,6 +1,7 @@
 // Case files of grains: sizes, materials, dry grains.
 #include "core/base/error.hpp"
 #include "driver/input/case_reader.hpp"
+#include "driver/input/run_context.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>
@@ -176,6 +177,21 @@ TEST(GrainCaseReader, SizesByMassThatCannotBe) {
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, minimum: 4e-3}", "only a distribution has it"},
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, value: 5e-3}", "give exactly one of value in m"}})
     EXPECT_NE(refused(sizes).find(words), std::string::npos) << refused(sizes);
+}
+
+// The fixed population of 4 mm is no sediment and makes no class.
+TEST(GrainCaseReader, SizeClassesAreTheSievesOfFreeGrains) {
+  const std::string sizes = "{sieve: {sizes: [4.2e-3, 5e-3, 6e-3], finer: [0, 0.5, 1]}}";
+  const Case c = read(flume, {"grains.0.diameter=" + sizes, "analysis.fractional_transport={}"});
+  const analysis::GrainContext sieved = *run_context(c).grains;
+  EXPECT_EQ(sieved.size_class_edges, (std::vector<double>{4.2e-3, 5e-3, 6e-3}));
+  EXPECT_EQ(sieved.smallest_free, c.grains[0].smallest_diameter());
+  EXPECT_EQ(sieved.largest_free, c.grains[0].largest_diameter());
+  EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
+  const analysis::GrainContext alike = *run_context(read(flume, {"analysis.fractional_transport={}"})).grains;
+  EXPECT_EQ(alike.size_class_edges.size(), 2u);
+  EXPECT_EQ(alike.smallest_free, 4.95e-3);
+  EXPECT_TRUE(run_context(read(flume)).grains->size_class_edges.empty()) << "nothing asks for them";
 }
 
 TEST(GrainCaseReader, PopulationsAndWallsChangeTheMaterial) {
