@@ -138,6 +138,7 @@ void Fluid<Real>::end_step() {
                                                                                   : Arrangement::swapped);
   walls_.end_sweep();
   carry_force();
+  if (walls_.has_outlet()) walls_.update_outlets(populations_, cells_, communicator_);
 }
 
 // A row takes the same variant of the sweep on every rank: the one that stores shear rates may round differently.

@@ -1,4 +1,5 @@
 // Walls::apply: the rules of walls.hpp, direction by direction, row by row.
+#include "lbm/lattice/equilibrium.hpp"
 #include "lbm/lattice/face_axes.hpp"
 #include "lbm/walls/walls.hpp"
 
@@ -62,8 +63,7 @@ Real Walls<Real>::with_velocity(const Populations<Real>& populations, int o, std
 }
 
 template <typename Real>
-Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::ptrdiff_t cell,
-                              double deviation) const {
+Real Walls<Real>::at_outlet(const Populations<Real>& populations, int o, std::ptrdiff_t cell, double deviation) const {
   Vec3 momentum = -half_force_;  // a collision leaves the whole force in it; the velocity takes half
   double density = 1.0;
   for (int i = 0; i < D3Q19::directions; ++i) {
@@ -71,11 +71,7 @@ Real Walls<Real>::at_pressure(const Populations<Real>& populations, int o, std::
     density += f;
     for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
   }
-  const Vec3 u = momentum / density;
-  const double cu = dot(o, u);
-  return static_cast<Real>(-static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
-                           2.0 * D3Q19::weight(o) *
-                               (deviation + (1.0 + deviation) * (4.5 * cu * cu - 1.5 * u.squaredNorm())));
+  return static_cast<Real>(equilibrium_deviation(o, deviation, momentum / density));
 }
 
 // Applies a reflection in loops over plain arrays.
@@ -136,7 +132,7 @@ Real Walls<Real>::from_edge(const Populations<Real>& populations, const Incoming
                             std::ptrdiff_t cell, int other) const {
   const FaceCondition& wall = faces_[incoming.face];
   if (wall.type == FaceType::pressure_outlet)
-    return at_pressure(populations, incoming.direction, cell, wall.density_deviation);
+    return at_outlet(populations, incoming.direction, cell, outlets_[incoming.face]->deviation());
   Vec3 velocity = Vec3::Zero();
   for (const int face : {std::min(incoming.face, other), std::max(incoming.face, other)})
     if (traits_of(faces_[face].type).has_velocity) velocity += faces_[face].velocity;
@@ -148,8 +144,9 @@ template <typename Real>
 Real Walls<Real>::from_wall(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell) const {
   const FaceCondition& wall = faces_[incoming.face];
-  return traits_of(wall.type).has_velocity ? with_velocity(populations, incoming.direction, cell, wall.velocity)
-                                           : at_pressure(populations, incoming.direction, cell, wall.density_deviation);
+  return traits_of(wall.type).has_velocity
+             ? with_velocity(populations, incoming.direction, cell, wall.velocity)
+             : at_outlet(populations, incoming.direction, cell, outlets_[incoming.face]->deviation());
 }
 
 // A row is one reflection, except where it meets other faces: at its ends, or along its whole length.

@@ -61,6 +61,8 @@ std::string state_name(int face, int n) {
   return fmt::format("fluid/wall_{}_{}", names.at(n), face_names[face]);
 }
 
+std::string outlet_name(int face) { return fmt::format("fluid/outlet_{}", face_names[face]); }
+
 }  // namespace
 
 template <typename Real>
@@ -81,11 +83,14 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
         bounced_[face].resize(indexing.size()[first_axis(axis)], indexing.size()[second_axis(axis)],
                               static_cast<Real>(bounced_fraction(face, 0.0)));
     }
-  for (int face = 0; face < 6; ++face)
+  for (int face = 0; face < 6; ++face) {
+    if (faces[face].type == FaceType::pressure_outlet)
+      outlets_[face].emplace(faces[face].density_deviation, decomposition.cells()[face / 2]);
     if (has_stress(face)) {
       check_depth(decomposition, face, face_names[face]);
       if (present_[face]) stress_[face].emplace(indexing, face, present_, decomposition.cells()[face / 2], viscosity_);
     }
+  }
 }
 
 template <typename Real>
@@ -162,10 +167,43 @@ void Walls<Real>::end_sweep() {
   swept_ = true;
 }
 
+template <typename Real>
+bool Walls<Real>::has_outlet() const {
+  return std::any_of(outlets_.begin(), outlets_.end(), [](const auto& face) { return face.has_value(); });
+}
+
+// Sums of integers, so that the mean does not depend on the ranks.
+template <typename Real>
+void Walls<Real>::update_outlets(const Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator) {
+  std::array<std::int64_t, 12> sums{};  // of each face: of the momentum out of the box, and the number of cells
+  for (int face = 0; face < 6; ++face) {
+    if (!outlets_[face] || !present_[face]) continue;
+    const int axis = face / 2, u_axis = first_axis(axis), v_axis = second_axis(axis);
+    const double outward = face % 2 == 0 ? -1.0 : 1.0;
+    Index3 at{0, 0, 0};
+    at[axis] = face % 2 == 0 ? 0 : indexing_.size()[axis] - 1;
+    for (at[v_axis] = 0; at[v_axis] < indexing_.size()[v_axis]; ++at[v_axis])
+      for (at[u_axis] = 0; at[u_axis] < indexing_.size()[u_axis]; ++at[u_axis]) {
+        const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
+        if (!cells.is_fluid(cell)) continue;
+        double momentum = -half_force_[axis];
+        for (int i = 1; i < D3Q19::directions; ++i)
+          if (D3Q19::c[i][axis] != 0) momentum += D3Q19::c[i][axis] * populations.post_collision(i, cell);
+        sums[2 * face] = exact_sum(sums[2 * face], LatticeFixed::from(outward * momentum));
+        ++sums[2 * face + 1];
+      }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator);
+  for (int face = 0; face < 6; ++face)
+    if (outlets_[face] && sums[2 * face + 1] > 0)
+      outlets_[face]->update(LatticeFixed::to_double(sums[2 * face]) / static_cast<double>(sums[2 * face + 1]));
+}
+
 // Ranks away from a face take part with nothing.
 template <typename Real>
 void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decomposition, const Block& block) const {
   for (int face = 0; face < 6; ++face) {
+    if (outlets_[face]) outlets_[face]->save(archive, outlet_name(face));
     const ArrayBox box = face_box(decomposition, block, face, present_[face]);
     for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && swept_; ++n)
       archive.write(state_name(face, n),
@@ -182,6 +220,7 @@ void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decompositio
 template <typename Real>
 void Walls<Real>::load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block) {
   for (int face = 0; face < 6; ++face) {
+    if (outlets_[face]) outlets_[face]->load(archive, outlet_name(face));
     const ArrayBox box = face_box(decomposition, block, face, present_[face]);
     for (int n = 0; n < WallStress<Real>::arrays && has_stress(face) && archive.has(state_name(face, n)); ++n) {
       archive.read(state_name(face, n), stress_[face] ? stress_[face]->state(n) : std::span<Real>(), box);

@@ -8,8 +8,9 @@
 //                      The two populations along an axis take just T out of the cell, and no mass, whatever collision
 //                      and subgrid model make of the flow.
 //   moving, inlet      f_o(x, t+1) = f_o'^c(x, t) + 6 w_o rho(x, t) c_o.U                               (Ladd 1994)
-//   outlet             f_o(x, t+1) = -f_o'^c(x, t) + 2 w_o rho_w [1 + 9/2 (c_o.u)^2 - 3/2 u.u],  u of the cell
-//                      (anti-bounce-back, Ginzburg, Verhaeghe and d'Humieres 2008)
+//   outlet             f_o(x, t+1) = f_o^eq(rho_w, u),   u of the cell, rho_w of outlet_density.hpp
+//                      What enters has no part out of equilibrium: at small viscosities a rule that keeps or reverses
+//                      that part (anti-bounce-back, extrapolation) amplifies it, and breaks down as eddies leave.
 //
 // Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share in
 // shear, g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
@@ -32,7 +33,10 @@
 #include "lbm/lattice/cell_map.hpp"
 #include "lbm/lattice/populations.hpp"
 #include "lbm/walls/boundary.hpp"
+#include "lbm/walls/outlet_density.hpp"
 #include "lbm/walls/wall_stress.hpp"
+
+#include <mpi.h>
 
 #include <optional>
 #include <string>
@@ -96,6 +100,10 @@ public:
   // Populations have been set otherwise: the next apply() takes these velocities from them.
   void forget_sweep() { swept_ = false; }
 
+  bool has_outlet() const;  // of the box, on whatever rank
+  // Takes the mean momentum at each outlet from the populations that a step has left. Collective where has_outlet().
+  void update_outlets(const Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator);
+
   // The force density of the last collision, half of which post-collision populations carry beyond rho u.
   void set_carried_force(const Vec3& force) { half_force_ = 0.5 * force; }
 
@@ -137,7 +145,7 @@ private:
   double bounced_fraction(int face, double shear_rate) const;
   Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell,
                      const Vec3& velocity) const;
-  Real at_pressure(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, double deviation) const;
+  Real at_outlet(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, double deviation) const;
 
   CellIndexing indexing_;
   FaceConditions faces_;
@@ -147,6 +155,7 @@ private:
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
   std::array<std::optional<WallStress<Real>>, 6> stress_;  // at faces that obey the law of the wall
+  std::array<std::optional<OutletDensity>, 6> outlets_;    // on all ranks
   bool swept_ = false;
 };
 
