@@ -188,7 +188,8 @@ void Walls<Real>::update_outlets(const Populations<Real>& populations, const Cel
         if (!cells.is_fluid(cell)) continue;
         double momentum = -half_force_[axis];
         for (int i = 1; i < D3Q19::directions; ++i)
-          if (D3Q19::c[i][axis] != 0) momentum += D3Q19::c[i][axis] * populations.post_collision(i, cell);
+          if (D3Q19::c[i][axis] != 0)
+            momentum += D3Q19::c[i][axis] * static_cast<double>(populations.post_collision(i, cell));
         sums[2 * face] = exact_sum(sums[2 * face], LatticeFixed::from(outward * momentum));
         ++sums[2 * face + 1];
       }
