@@ -4,8 +4,9 @@ from thalweg.labelled import Labelled
 
 
 class Columns(Labelled):
-    """Arrays by name; `units` has the unit of each ("1": none), `components` the names along the last axis, if any. source: where
-    they come from, for messages. axes: names of their leading axes; named: of the axes of each array (thalweg.labelled)."""
+    """Arrays by name; `units` has the unit of each ("1": none), `components` the names along the last axis, if any.
+    source: where they come from, for messages. axes: names of their leading axes; named: of the axes of each array
+    (thalweg.labelled)."""
 
     def __init__(self, arrays, units, components=None, source="", axes=(), named=None):
         self._arrays, self.source, self.axes = dict(arrays), str(source), tuple(axes)

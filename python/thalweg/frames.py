@@ -19,8 +19,8 @@ AXES = {3: list("xyz"), 9: [row + column for row in "xyz" for column in "xyz"], 
 
 
 class GrainFrame:
-    """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row, column]
-    and so on; `arrays` has all of them with their units."""
+    """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row,
+    column] and so on; `arrays` has all of them with their units."""
 
     may_be_empty = False
 
@@ -38,8 +38,14 @@ class GrainFrame:
 
     def _tensors_flat(self):
         """The same with the nine components of a tensor along one axis, all with their names."""
-        arrays = {name: values.reshape(len(values), -1) if values.ndim > 1 else values for name, values in self.arrays.items()}
-        components = {name: AXES[values.shape[1]] for name, values in arrays.items() if values.ndim > 1 and values.shape[1] in AXES}
+        arrays = {
+            name: values.reshape(len(values), -1) if values.ndim > 1 else values for name, values in self.arrays.items()
+        }
+        components = {
+            name: AXES[values.shape[1]]
+            for name, values in arrays.items()
+            if values.ndim > 1 and values.shape[1] in AXES
+        }
         return Columns(arrays, GRAIN_UNITS, components, self.path, ("id",))
 
     def to_pandas(self):
@@ -102,7 +108,9 @@ class FluidFrame:
     def _with_places(self):
         places = {axis: self.centres("xyz".index(axis)) for axis in "zyx"}
         components = {name: AXES[values.shape[3]] for name, values in self._image[2].items() if values.ndim > 3}
-        columns = Columns({**self._image[2], **places}, {**FLUID_UNITS, **dict.fromkeys("xyz", "m")}, components, self.path, "zyx")
+        columns = Columns(
+            {**self._image[2], **places}, {**FLUID_UNITS, **dict.fromkeys("xyz", "m")}, components, self.path, "zyx"
+        )
         columns.row_axes = 3
         return columns
 
@@ -111,7 +119,8 @@ class FluidFrame:
         return self._with_places().to_pandas()
 
     def to_xarray(self):
-        """An xarray.Dataset with the dimensions z, y, x (m, of the middles of the cells) and axis, and the attribute `time` (s)."""
+        """An xarray.Dataset with the dimensions z, y, x (m, of the middles of the cells) and axis, and the attribute
+        `time` (s)."""
         return self._with_places().to_xarray().assign_attrs(time=self.time)
 
     def centres(self, axis):
@@ -145,8 +154,8 @@ class SolidFrame:
 
 
 class Frames(Sequence):
-    """The frames of a .pvd index in their order; `times` in s. A slice is a series as well. Each frame is made, and reads its
-    file, anew whenever it is asked for, so that a loop over many holds one."""
+    """The frames of a .pvd index in their order; `times` in s. A slice is a series as well. Each frame is made, and
+    reads its file, anew whenever it is asked for, so that a loop over many holds one."""
 
     def __init__(self, entries, kind):
         self._entries, self._kind = entries, kind

@@ -14,8 +14,10 @@ def opened(path):
         with h5py.File(path) as file:
             yield file
     except (OSError, RuntimeError, KeyError):   # h5py raises any of them
-        raise RunFolderError(f"{path} cannot be read: a restart has replaced it at this moment, or it is damaged; try again, or "
-                             "restart the run from an earlier checkpoint, which writes a new one.") from None
+        raise RunFolderError(
+            f"{path} cannot be read: a restart has replaced it at this moment, or it is damaged; try again, or "
+            "restart the run from an earlier checkpoint, which writes a new one."
+        ) from None
 
 
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."   # NAME of a data set that only names a dimension
@@ -30,9 +32,11 @@ def arrays_in(group):
 def columns_of(group):
     """The arrays of an HDF5 group with their units, components and dimensions."""
     arrays = arrays_in(group)
-    return Columns({name: data[()] for name, data in arrays.items()}, {name: unit_of(data) for name, data in arrays.items()},
-                   {name: components_of(data) for name, data in arrays.items() if "components" in data.attrs},
-                   f"{group.file.filename}{group.name.rstrip('/')}", named=dimensions_in(arrays))
+    return Columns(
+        {name: data[()] for name, data in arrays.items()}, {name: unit_of(data) for name, data in arrays.items()},
+        {name: components_of(data) for name, data in arrays.items() if "components" in data.attrs},
+        f"{group.file.filename}{group.name.rstrip('/')}", named=dimensions_in(arrays),
+    )
 
 
 def dimensions_in(arrays):

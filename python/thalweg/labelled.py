@@ -7,7 +7,9 @@ import numpy as np
 
 from thalweg.errors import RunFolderError
 
-COMPONENTS = {2: "pair", 3: "axis", 4: "quaternion", 6: "symmetric", 9: "tensor"}   # names of axes by the number of components
+COMPONENTS = {
+    2: "pair", 3: "axis", 4: "quaternion", 6: "symmetric", 9: "tensor",
+}  # names of axes by the number of components
 
 
 def package(name):
@@ -15,13 +17,15 @@ def package(name):
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError:
-        raise RunFolderError(f"this needs the Python package {name}; install it (pip install {name}, or python3-{name} on Debian).") from None
+        raise RunFolderError(
+            f"this needs the Python package {name}; install it (pip install {name}, or python3-{name} on Debian)."
+        ) from None
 
 
 class Labelled(Mapping):
-    """Arrays by name with `units` and `components`. What their dimensions are is in `named`, from the file; where a file does not say, the
-    first are `axes`, the others are named after the array. An array that has the name of an axis holds the places along it (`z`, `time`,
-    `id`)."""
+    """Arrays by name with `units` and `components`. What their dimensions are is in `named`, from the file; where a
+    file does not say, the first are `axes`, the others are named after the array. An array that has the name of an axis
+    holds the places along it (`z`, `time`, `id`)."""
 
     axes, named, units, components = (), {}, {}, {}
     row_axes = 1   # how many axes are rows of a table
@@ -55,7 +59,8 @@ class Labelled(Mapping):
         return found.most_common(1)[0][0] if found else ()
 
     def to_xarray(self):
-        """An xarray.Dataset with named dimensions, coordinates where there are any, and the attribute `units` of each variable."""
+        """An xarray.Dataset with named dimensions, coordinates where there are any, and the attribute `units` of each
+        variable."""
         xarray = package("xarray")
         variables, coordinates = {}, {}
         for name in self:
@@ -68,8 +73,9 @@ class Labelled(Mapping):
         return xarray.Dataset(variables, coordinates)
 
     def to_pandas(self):
-        """A pandas.DataFrame with a row for each place along the axis of most arrays (of tracks and probes for each time and grain or
-        point) and a column for each component; arrays with other axes are left to to_xarray(). `attrs["units"]` has the units of the columns."""
+        """A pandas.DataFrame with a row for each place along the axis of most arrays (of tracks and probes for each
+        time and grain or point) and a column for each component; arrays with other axes are left to to_xarray().
+        `attrs["units"]` has the units of the columns."""
         pandas = package("pandas")
         rows = self.rows()
         columns, units, shape = {}, {}, None
@@ -91,7 +97,11 @@ class Labelled(Mapping):
         names = [self.coordinate(axis) for axis in rows]
         places = [self[name] if name else np.arange(length) for name, length in zip(names, shape or [0] * len(rows))]
         labels = [name or axis for name, axis in zip(names, rows)]
-        return pandas.Index(places[0], name=labels[0]) if len(rows) == 1 else pandas.MultiIndex.from_product(places, names=labels)
+        return (
+            pandas.Index(places[0], name=labels[0])
+            if len(rows) == 1
+            else pandas.MultiIndex.from_product(places, names=labels)
+        )
 
     def flat(self, name):
         """Names and values of the columns that an array makes: velocity_x and so on."""

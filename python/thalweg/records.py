@@ -1,4 +1,5 @@
-"""What observers have recorded (`tracks/`, `probes/`, `entrainment/`): parts of a run as HDF5 files, joined along time."""
+"""What observers have recorded (`tracks/`, `probes/`, `entrainment/`): parts of a run as HDF5 files, joined along
+time."""
 import re
 from collections.abc import Mapping
 
@@ -12,15 +13,16 @@ from thalweg.labelled import Labelled, package
 
 
 def parts_of(folder, name):
-    """Paths of the parts in their order; before them the single file that older versions wrote. None where nothing is recorded."""
+    """Paths of the parts in their order; before them the single file that older versions wrote. None where nothing is
+    recorded."""
     paths = sorted((folder / name).glob("part_*.h5"), key=lambda path: int(re.search(r"\d+", path.name)[0]))
     single = folder / f"{name}.h5"
     return [single] * single.exists() + paths or None
 
 
 class Records(Labelled):
-    """Arrays by name as Columns has them, those that grow joined along time. An array is read when it is asked for, and no other
-    with it."""
+    """Arrays by name as Columns has them, those that grow joined along time. An array is read when it is asked for, and
+    no other with it."""
 
     row_axes = 2
 
@@ -72,7 +74,9 @@ class Records(Labelled):
         return len(self.units)
 
     def __repr__(self):
-        shapes = {name: (sum(self._kept), *shape[1:]) if name in self._rows else shape for name, shape in self._shapes.items()}
+        shapes = {
+            name: (sum(self._kept), *shape[1:]) if name in self._rows else shape for name, shape in self._shapes.items()
+        }
         return "\n".join(f"{name} [{self.units[name]}] {shapes[name]}" for name in self)
 
 
@@ -95,7 +99,9 @@ class Event(Columns):
     def __init__(self, group):
         columns = columns_of(group)
         super().__init__(columns, columns.units, columns.components, columns.source, named=columns.named)
-        self.attributes = {name: float(value) for name, value in group.attrs.items() if not name.endswith(("_units", "_unit"))}
+        self.attributes = {
+            name: float(value) for name, value in group.attrs.items() if not name.endswith(("_units", "_unit"))
+        }
 
 
 def next_name(name):
@@ -105,14 +111,18 @@ def next_name(name):
 
 
 class Events(Mapping):
-    """Events by name, in order of time; each is read when it is asked for. One of a name that an earlier one has, from a part of
-    the run that was watched otherwise, gets the next that is free."""
+    """Events by name, in order of time; each is read when it is asked for. One of a name that an earlier one has, from
+    a part of the run that was watched otherwise, gets the next that is free."""
 
     def __init__(self, paths):
         self._folder, found = paths[-1].parent, []
         for path in paths:
             with opened(path) as file:
-                part = [(float(group.attrs["time"]), path, name) for name, group in file.items() if isinstance(group, h5py.Group)]
+                part = [
+                    (float(group.attrs["time"]), path, name)
+                    for name, group in file.items()
+                    if isinstance(group, h5py.Group)
+                ]
             begin = min((event[0] for event in part), default=np.inf)
             found = [event for event in found if event[0] < begin] + part
         self._places = {}
@@ -136,6 +146,6 @@ class Events(Mapping):
         return len(self._places)
 
     def to_pandas(self):
-        """A pandas.DataFrame with a row for each event, by name, and its single numbers as columns; those of the arrays of one event come
-        from its own to_pandas()."""
+        """A pandas.DataFrame with a row for each event, by name, and its single numbers as columns; those of the arrays
+        of one event come from its own to_pandas()."""
         return package("pandas").DataFrame({name: event.attributes for name, event in self.items()}).T

@@ -75,8 +75,8 @@ class Run:
 
     @property
     def fractional_transport(self):
-        """Transport, surface and bed by size class (`analysis.fractional_transport`), the finest first: arrays over `diameter` (m), with
-        `edges` (m) and `d50` (m: of bed, surface, load)."""
+        """Transport, surface and bed by size class (`analysis.fractional_transport`), the finest first: arrays over
+        `diameter` (m), with `edges` (m) and `d50` (m: of bed, surface, load)."""
         return self.profiles["fractional_transport"]
 
     def _recorded(self, name):
@@ -84,29 +84,32 @@ class Run:
         parts = parts_of(self.folder, name)
         if not parts:
             told = name in (self.case.get("analysis") or {})
-            raise RunFolderError(f"{self.folder}: it has no {name} {'yet; they are written with the first checkpoint' if told else ''}"
-                                 f"{'' if told else f'because its case has no analysis.{name}, which records them'}.")
+            raise RunFolderError(
+                f"{self.folder}: it has no {name} {'yet; they are written with the first checkpoint' if told else ''}"
+                f"{'' if told else f'because its case has no analysis.{name}, which records them'}."
+            )
         return parts
 
     @cached_property
     def tracks(self):
-        """Tracks of single grains (`analysis.tracks`): `id`, `time` and arrays [time, grain, axis], of which `position` goes on
-        where a grain leaves a periodic box, each read when it is asked for. RunFolderError where none are recorded."""
+        """Tracks of single grains (`analysis.tracks`): `id`, `time` and arrays [time, grain, axis], of which `position`
+        goes on where a grain leaves a periodic box, each read when it is asked for. RunFolderError where none are
+        recorded."""
         parts = self._recorded("tracks")
         return Records(parts)
 
     @cached_property
     def probes(self):
-        """Velocity (m/s) [time, point, axis] and pressure (Pa) [time, point] of the fluid at high rate (`analysis.probes`), with
-        `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when it is asked for.
-        RunFolderError where none are recorded."""
+        """Velocity (m/s) [time, point, axis] and pressure (Pa) [time, point] of the fluid at high rate
+        (`analysis.probes`), with `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when
+        it is asked for. RunFolderError where none are recorded."""
         parts = self._recorded("probes")
         return Probes(parts, float(self.case["domain"]["spacing"]))
 
     @cached_property
     def entrainment(self):
-        """Events at which grains started to move (`analysis.entrainment`) by name, each with its arrays and, as `attributes`, its
-        single numbers. RunFolderError where they are not looked for."""
+        """Events at which grains started to move (`analysis.entrainment`) by name, each with its arrays and, as
+        `attributes`, its single numbers. RunFolderError where they are not looked for."""
         parts = self._recorded("entrainment")
         return Events(parts)
 
@@ -123,14 +126,18 @@ class Run:
         try:
             return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
         except ValueError:
-            raise RunFolderError(f"{path} is damaged; thalweg run ... --restart {self.folder} writes it again.") from None
+            raise RunFolderError(
+                f"{path} is damaged; thalweg run ... --restart {self.folder} writes it again."
+            ) from None
 
     def result(self, observer, name):
-        """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none, because the run is
-        still going, or ended before it had measured anything."""
+        """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none, because
+        the run is still going, or ended before it had measured anything."""
         value = ((self.summary or {}).get(observer) or {}).get(name)
         if value is None:
-            raise RunFolderError(f"{self.folder}: there is no {observer}.{name}; nothing has been measured, or the run has not ended.")
+            raise RunFolderError(
+                f"{self.folder}: there is no {observer}.{name}; nothing has been measured, or the run has not ended."
+            )
         return value
 
     @cached_property
@@ -140,8 +147,8 @@ class Run:
         return latest.parent / latest.read_text(encoding="utf-8").strip() if latest.exists() else None
 
     def averaged_from(self, observer):
-        """Time (s) at which the means of an observer begin: as the run said at its end, which is later than the key in the case
-        where a restart has added or changed the observer; while it is going, by the key."""
+        """Time (s) at which the means of an observer begin: as the run said at its end, which is later than the key in
+        the case where a restart has added or changed the observer; while it is going, by the key."""
         said = ((self.summary or {}).get(observer) or {}).get("mean_from")
         return float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0) if said is None else said)
 
@@ -181,8 +188,8 @@ class Run:
         return [grains for grains in populations if not any(grains.get(key) for key in held)] or populations
 
     def reference(self, name):
-        """What the run says of its reference grain (`diameter`, `density`) in every row of series.csv; None where there is no
-        row, or the run is older than these columns."""
+        """What the run says of its reference grain (`diameter`, `density`) in every row of series.csv; None where there
+        is no row, or the run is older than these columns."""
         if not (self.folder / "series.csv").exists():
             return None
         column = self.series.get(f"reference_{name}", ())
@@ -195,8 +202,8 @@ class Run:
 
     @cached_property
     def diameter(self):
-        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the mass of all free grains is finer
-        than."""
+        """m: the reference diameter, `analysis.reference_diameter` or the one that half of the mass of all free grains
+        is finer than."""
         given = self.reference("diameter") or (self.case.get("analysis") or {}).get("reference_diameter")
         if given:
             return float(given)
@@ -215,8 +222,12 @@ class Run:
         """Density of the free grains, mass over volume, over that of the fluid, 1."""
         density = self.reference("density")
         if density is None:
-            populations = [grains for grains in self.free_populations if isinstance(grains.get("diameter"), (int, float))]
-            volumes = [grains.get("count", 1) * grains["diameter"] ** self.size_exponent for grains in populations] or [1.0]
+            populations = [
+                grains for grains in self.free_populations if isinstance(grains.get("diameter"), (int, float))
+            ]
+            volumes = [grains.get("count", 1) * grains["diameter"] ** self.size_exponent for grains in populations] or [
+                1.0
+            ]
             densities = [grains["density"] for grains in populations] or [self.free_populations[0]["density"]]
             density = float(np.average(densities, weights=volumes))
         return density / self.case["fluid"]["density"]
@@ -238,8 +249,8 @@ class Run:
 
     @property
     def driven_by_slope(self):
-        """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or drags, no
-        face is open and no wall ends the box along x."""
+        """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or
+        drags, no face is open and no wall ends the box along x."""
         steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
         open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
         top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
@@ -254,8 +265,11 @@ class Profiles(dict):
         self.path = path
 
     def __missing__(self, name):
-        raise MissingName(name, self, str(self.path), f"analysis.{name} in the case would record it, from its time `from` on; it is written "
-                                                      "with every checkpoint.")
+        raise MissingName(
+            name, self, str(self.path),
+            f"analysis.{name} in the case would record it, from its time `from` on; it is written "
+            "with every checkpoint.",
+        )
 
 
 def runs_of_sweep(folder):

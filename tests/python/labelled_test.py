@@ -1,4 +1,5 @@
-"""Data of a run as pandas tables and xarray data sets, with units and named axes; and what is said of a name that is not there."""
+"""Data of a run as pandas tables and xarray data sets, with units and named axes; and what is said of a name that is
+not there."""
 import importlib.util
 import unittest
 import unittest.mock
@@ -17,14 +18,20 @@ GRAINS = np.array([3, 17])
 class Labelled(made_up.MadeUpFolder):
     def setUp(self):
         super().setUp()
-        self.write_frames([0.0, 0.5], [np.arange(6.0).reshape(2, 3), 1 + np.arange(6.0).reshape(2, 3)], id=[GRAINS, GRAINS],
-                          contact_stress=[np.arange(18.0).reshape(2, 9)] * 2)
+        self.write_frames(
+            [0.0, 0.5], [np.arange(6.0).reshape(2, 3), 1 + np.arange(6.0).reshape(2, 3)], id=[GRAINS, GRAINS],
+            contact_stress=[np.arange(18.0).reshape(2, 9)] * 2,
+        )
         (self.folder / "series.csv").write_text("time [s],q_star [1],bed_stress [Pa]\n0,1,2\n1,3,4\n")
         with h5py.File(self.folder / "profiles.h5", "w") as file:
             made_up.write_array(file, "fluid_statistics/z", np.arange(4.0), "m", "z")
             made_up.write_array(file, "fluid_statistics/y", np.arange(5.0), "m", "y")
-            made_up.write_array(file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "z axis", "x y z")
-            made_up.write_array(file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "z y axis", "x y z")
+            made_up.write_array(
+                file, "fluid_statistics/velocity", np.arange(12.0).reshape(4, 3), "m/s", "z axis", "x y z"
+            )
+            made_up.write_array(
+                file, "fluid_statistics/section_velocity", np.arange(60.0).reshape(4, 5, 3), "m/s", "z y axis", "x y z"
+            )
             made_up.write_array(file, "transport_rate/hop_length_count", np.arange(4.0), "1", "hop_length_bin")
             made_up.write_array(file, "old/z", np.arange(4.0), "m")
             made_up.write_array(file, "old/velocity", np.arange(12.0).reshape(4, 3), "m/s", components="x y z")
@@ -45,7 +52,9 @@ class Labelled(made_up.MadeUpFolder):
                 group = file.create_group(f"event_{n}")
                 group.attrs["time"], group.attrs["time_units"], group.attrs["speed"] = float(n), "s", 0.1 * n
                 made_up.write_array(file, f"event_{n}/time", np.arange(2.0), "s", "time")
-                made_up.write_array(file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "time axis", "x y z")
+                made_up.write_array(
+                    file, f"event_{n}/fluid_torque", np.arange(6.0).reshape(2, 3) * n, "N m", "time axis", "x y z"
+                )
         (self.folder / "fluid").mkdir(exist_ok=True)
         self.velocity = np.arange(2 * 3 * 4 * 3.0).reshape(2, 3, 4, 3)
         made_up.write_image(self.folder / "fluid/fluid_0.vti", (0, 4, 0, 3, 0, 2), 0.5, {"velocity": self.velocity})
@@ -54,12 +63,19 @@ class Labelled(made_up.MadeUpFolder):
 
     def test_a_wrong_name_says_the_near_ones_and_all(self):
         run = self.run_folder
-        for data, name, words in ((run.series, "qstar", r"series\.csv: there is no 'qstar'; did you mean q_star\? There are: time, q_star, bed_stress\."),
-                                  (run.profiles["fluid_statistics"], "Velocity", r"profiles\.h5/fluid_statistics: .*did you mean velocity"),
-                                  (run.profiles, "grain_profile", r"There are: fluid_statistics, old, transport_rate\. analysis\.grain_profile in the case"),
-                                  (run.tracks, "positions", r"tracks: there is no 'positions'; did you mean position\?"),
-                                  (run.entrainment, "event_9", "did you mean event_1 or event_2|did you mean event_2 or event_1"),
-                                  (run.fluid[0].arrays, "xyz", r"fluid_0\.vti: there is no 'xyz'\. There are: velocity\.")):
+        for data, name, words in (
+            (
+                run.series, "qstar",
+                r"series\.csv: there is no 'qstar'; did you mean q_star\? There are: time, q_star, bed_stress\.",
+            ),
+            (run.profiles["fluid_statistics"], "Velocity", r"profiles\.h5/fluid_statistics: .*did you mean velocity"),
+            (
+                run.profiles, "grain_profile",
+                r"There are: fluid_statistics, old, transport_rate\. analysis\.grain_profile in the case",
+            ), (run.tracks, "positions", r"tracks: there is no 'positions'; did you mean position\?"),
+            (run.entrainment, "event_9", "did you mean event_1 or event_2|did you mean event_2 or event_1"),
+            (run.fluid[0].arrays, "xyz", r"fluid_0\.vti: there is no 'xyz'\. There are: velocity\."),
+        ):
             with self.assertRaisesRegex(KeyError, words):
                 data[name]
             self.assertNotIn(name, data)
@@ -70,14 +86,20 @@ class Labelled(made_up.MadeUpFolder):
         self.assertEqual(profiles["fluid_statistics"].dimensions("y"), ("y",))
         self.assertEqual(profiles["transport_rate"].dimensions("hop_length_count"), ("hop_length_bin",))
         self.assertEqual(set(profiles["transport_rate"]), {"hop_length_count"})
-        self.assertEqual((profiles["old"].dimensions("velocity"), profiles["old"].units["velocity"]), (("velocity_0", "axis"), "m/s"))
+        self.assertEqual(
+            (profiles["old"].dimensions("velocity"), profiles["old"].units["velocity"]), (("velocity_0", "axis"), "m/s")
+        )
         self.assertEqual(self.run_folder.tracks.dimensions("position"), ("time", "id", "axis"))
         self.assertEqual(self.run_folder.tracks.dimensions("id"), ("id",))
         self.assertEqual(self.run_folder.probes.dimensions("position"), ("point", "axis"))
 
     def test_without_the_packages(self):
-        for name, call in (("pandas", self.run_folder.series.to_pandas), ("xarray", self.run_folder.fluid[0].to_xarray)):
-            with unittest.mock.patch.dict("sys.modules", {name: None}), self.assertRaisesRegex(thalweg.RunFolderError, f"pip install {name}"):
+        for name, call in (
+            ("pandas", self.run_folder.series.to_pandas), ("xarray", self.run_folder.fluid[0].to_xarray),
+        ):
+            with unittest.mock.patch.dict("sys.modules", {name: None}), self.assertRaisesRegex(
+                thalweg.RunFolderError, f"pip install {name}"
+            ):
                 call()
 
     @unittest.skipUnless(HAS_XARRAY, "needs xarray")

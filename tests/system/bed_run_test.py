@@ -107,7 +107,9 @@ output: {series: {every: 0.02}}
 
     def test_every_dataset_has_its_unit(self):
         with h5py.File(self.folder / "run/bed.h5") as file:
-            units = {name: data.attrs["units"].decode() for name, data in file["grains"].items() if "units" in data.attrs}
+            units = {
+                name: data.attrs["units"].decode() for name, data in file["grains"].items() if "units" in data.attrs
+            }
             self.assertEqual(units, {"id": "1", "radius": "m", "density": "kg/m^3", "position": "m",
                                      "velocity": "m/s", "angular_velocity": "rad/s"})
             self.assertEqual(file["bed/box"][()].tolist(), [0.02, 0.015, 0.06])

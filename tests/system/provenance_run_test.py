@@ -37,9 +37,15 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.001, keep: 3}}
 
     def test_what_the_summary_says(self):
         found = self.summary("tree/runs/a")["provenance"]
-        self.assertLess(abs(datetime.now(timezone.utc) - datetime.fromisoformat(found["started"])), timedelta(minutes=10))
+        self.assertLess(
+            abs(datetime.now(timezone.utc) - datetime.fromisoformat(found["started"])), timedelta(minutes=10)
+        )
         self.assertEqual((found["host"], found["nodes"]), (socket.gethostname(), 1))
-        models = [line.split(": ", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
+        models = [
+            line.split(": ", 1)[1].strip()
+            for line in Path("/proc/cpuinfo").read_text().splitlines()
+            if line.startswith("model name")
+        ]
         self.assertEqual(found["processor"], models[0])
         self.assertRegex(found["compiler"], r"^(GNU|Clang) \d+\.")
         self.assertIn("-ffp-contract=off", found["compiler_flags"].split())
@@ -47,10 +53,19 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.001, keep: 3}}
         self.assertRegex(found["mpi"] + found["hdf5"], r"\d\.\d")
         sums = {key: hashlib.sha256((self.folder / "tree" / file).read_bytes()).hexdigest()
                 for key, file in (("grains.0.placement.file", "bed/bed.h5"), ("solids.0.stl", "surfaces/sill.stl"))}
-        self.assertEqual(found["inputs"], [{"key": "grains.0.placement.file", "path": "../../bed/bed.h5", "sha256": sums["grains.0.placement.file"]},
-                                           {"key": "solids.0.stl", "path": "../../surfaces/sill.stl", "sha256": sums["solids.0.stl"]}])
+        self.assertEqual(
+            found["inputs"],
+            [
+                {
+                    "key": "grains.0.placement.file", "path": "../../bed/bed.h5",
+                    "sha256": sums["grains.0.placement.file"],
+                }, {"key": "solids.0.stl", "path": "../../surfaces/sill.stl", "sha256": sums["solids.0.stl"]},
+            ],
+        )
         log, info = (self.folder / "tree/runs/a/run.log").read_text(), self.run_well("info", "tree/runs/a").stdout
-        for word in (found["started"], found["host"], found["compiler"], found["compiler_flags"], found["mpi"], *sums.values()):
+        for word in (
+            found["started"], found["host"], found["compiler"], found["compiler_flags"], found["mpi"], *sums.values(),
+        ):
             self.assertIn(word, log)
             self.assertIn(word, info)
         self.assertNotIn("provenance", self.run_well("info", "--csv", "tree/runs/a").stdout)
@@ -59,7 +74,10 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.001, keep: 3}}
         before = (self.folder / "tree/runs/a/bed.h5").read_bytes()
         (self.folder / "tree").rename(self.folder / "elsewhere")
         kept = yaml.safe_load((self.folder / "elsewhere/runs/a/case.yaml").read_text())
-        self.assertEqual((kept["grains"][0]["placement"]["file"], kept["solids"][0]["stl"]), ("../../bed/bed.h5", "../../surfaces/sill.stl"))
+        self.assertEqual(
+            (kept["grains"][0]["placement"]["file"], kept["solids"][0]["stl"]),
+            ("../../bed/bed.h5", "../../surfaces/sill.stl"),
+        )
         os.symlink(self.folder / "elsewhere/runs/a", self.folder / "link")
         for number, case in enumerate(("elsewhere/runs/a/case.yaml", "link/case.yaml")):
             self.run_well("run", case, "--out", f"again/{number}")
@@ -72,8 +90,10 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.001, keep: 3}}
             said = self.run_well("run", self.case, "--out", out, *self.BED, "--restart", half).stdout
             self.assertNotIn("changed since then", said)
         write_box(self.folder / "tree/surfaces/other.stl", (0, -1, -1), (5, 31, 6))
-        said = self.run_well("run", self.case, "--out", "tree/c", *self.BED, "--restart", "tree/b", "--until", "0.003", "--set",
-                             "solids.0.stl=surfaces/other.stl").stdout
+        said = self.run_well(
+            "run", self.case, "--out", "tree/c", *self.BED, "--restart", "tree/b", "--until", "0.003", "--set",
+            "solids.0.stl=surfaces/other.stl",
+        ).stdout
         self.assertIn("changed since then: solids.0.stl: ../surfaces/sill.stl -> ", said)
 
 

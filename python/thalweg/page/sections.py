@@ -14,17 +14,24 @@ from thalweg.sizes import Sizes
 from thalweg.sizes import measured as measured_by_size
 from thalweg.transport import transport
 
-SYSTEMS = {"resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains", "model_fluid": "grains in a model fluid",
-           "continuum": "two-phase continuum"}
-WORDS = {"bed_height": "height of the bed", "porosity": "porosity", "flow_depth": "flow above the bed", "hydraulic_radius": "hydraulic radius",
-         "bed_stress": "stress on the bed", "shields_number": "Shields number"}
+SYSTEMS = {
+    "resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains",
+    "model_fluid": "grains in a model fluid", "continuum": "two-phase continuum",
+}
+WORDS = {
+    "bed_height": "height of the bed", "porosity": "porosity", "flow_depth": "flow above the bed",
+    "hydraulic_radius": "hydraulic radius", "bed_stress": "stress on the bed", "shields_number": "Shields number",
+}
 
 
 def page_of(run):
     """The whole page."""
     sessions = sessions_of(run.folder)
-    parts = [heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run), profiles(run), course(run),
-             warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions), repetition(run), footer(run)]
+    parts = [
+        heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run), profiles(run),
+        course(run), warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions),
+        repetition(run), footer(run),
+    ]
     return html.document(f"{run.name} - Thalweg", "\n".join(part for part in parts if part))
 
 
@@ -49,19 +56,31 @@ def heading(run, sessions):
         kind, state = "finished", f"Finished at {number(summary['simulated_time'])} s."
     else:
         kind = "unfinished"
-        state = f"Not finished, {summary['reason']}: at {number(summary['simulated_time'])} of {number(summary['until'])} s."
+        state = (
+            f"Not finished, {summary['reason']}: at {number(summary['simulated_time'])} of"
+            f" {number(summary['until'])} s."
+        )
     system = str(run.case.get("system", "resolved"))
     lead = SYSTEMS.get(system, system)
     if sessions and sessions[-1].shape:
         lead += ": " + sessions[-1].shape.partition(" on ")[2]
-    return (f"<header><h1>{html.escape(run.name)}</h1>" + html.paragraph(lead, "lead") + html.paragraph(state, f"state {kind}") + "</header>")
+    return (
+        f"<header><h1>{html.escape(run.name)}</h1>"
+        + html.paragraph(lead, "lead")
+        + html.paragraph(state, f"state {kind}")
+        + "</header>"
+    )
 
 
 def findings(run):
     """The bed at the end."""
     bed = (run.summary or {}).get("bed") or {}
     units = (run.summary or {}).get("units") or {}
-    rows = [(words, number(bed[name]), "" if units.get(name, "1") == "1" else units[name]) for name, words in WORDS.items() if name in bed]
+    rows = [
+        (words, number(bed[name]), "" if units.get(name, "1") == "1" else units[name])
+        for name, words in WORDS.items()
+        if name in bed
+    ]
     return html.section("The bed at the end", html.table(rows, numbers=(1,))) if rows else ""
 
 
@@ -77,8 +96,12 @@ def pictures(run):
     if run.case.get("system") == "continuum":
         return ""
     name, draw = overview.side_view_of(run)
-    caption = {"bed": "Side view of the last stored frame: the grains, coloured by speed, in front of the flow in the middle plane.",
-               "flow": "Speed of the fluid in the middle plane, in the last stored frame."}[name]
+    caption = {
+        "bed": (
+            "Side view of the last stored frame: the grains, coloured by speed, in front of the flow in the middle"
+            " plane."
+        ), "flow": "Speed of the fluid in the middle plane, in the last stored frame.",
+    }[name]
     return html.section("Picture", attempt(draw, caption))
 
 
@@ -89,12 +112,22 @@ def transport_section(run):
         return ""
     if not {"q_star", "q_s"} & set(series):
         return ""
-    parts = [attempt(lambda: transport_rate.figure_of(run),
-                     "Transport rate against time. q* is the volume of grains that passes per unit width and time over sqrt((s - 1) g d^3); "
-                     "shaded: the time of the mean, with a band of one standard error.")]
+    parts = [
+        attempt(
+            lambda: transport_rate.figure_of(run),
+            (
+                "Transport rate against time. q* is the volume of grains that passes per unit width and time over"
+                " sqrt((s - 1) g d^3); shaded: the time of the mean, with a band of one standard error."
+            ),
+        )
+    ]
     try:
-        parts += [html.paragraph(sentence[:1].upper() + sentence[1:] + ".") if not sentence.startswith("q") else html.paragraph(sentence + ".")
-                  for sentence in transport(run).sentences()]
+        parts += [
+            html.paragraph(sentence[:1].upper() + sentence[1:] + ".")
+            if not sentence.startswith("q")
+            else html.paragraph(sentence + ".")
+            for sentence in transport(run).sentences()
+        ]
     except RunFolderError as error:
         parts.append(html.paragraph(f"There is no mean: {error}"))
     return html.section("Transport", *parts)
@@ -104,18 +137,27 @@ def size_section(run):
     """Transport by size class."""
     if not measured_by_size(run):
         return ""
-    caption = ("Left: q* of each class by its own size and its share of the surface (Wilcock and Crowe) or of the bed (Parker and Klingeman); "
-               "right: gradings of bed, surface and load.")
+    caption = (
+        "Left: q* of each class by its own size and its share of the surface (Wilcock and Crowe) or of the bed (Parker"
+        " and Klingeman); right: gradings of bed, surface and load."
+    )
     found = Sizes(run)
-    return html.section("Transport by size class", attempt(lambda: sizes.figure_of(run), caption), html.paragraph(found.sentence() + "."),
-                        html.table(found.rows(), found.HEADINGS, range(1, len(found.HEADINGS))))
+    return html.section(
+        "Transport by size class", attempt(lambda: sizes.figure_of(run), caption),
+        html.paragraph(found.sentence() + "."), html.table(found.rows(), found.HEADINGS, range(1, len(found.HEADINGS))),
+    )
 
 
 def profiles(run):
     found = run.profiles
     if "continuum" in found:
-        return html.section("Profiles", attempt(lambda: column_figure(run), "The column at the end: solid fraction, velocities and stresses "
-                                                                            "over the height."))
+        return html.section(
+            "Profiles",
+            attempt(
+                lambda: column_figure(run),
+                "The column at the end: solid fraction, velocities and stresses " "over the height.",
+            ),
+        )
     draw = overview.profiles_of(run)
     if draw is None and fluid_profiles.measured(run):
         def draw():
@@ -124,10 +166,22 @@ def profiles(run):
         return ""
     caption = "Means over the height"
     balance = run.profiles.get("stress_balance")
-    parts = [attempt(draw, f"{caption}, from profiles.h5." if balance is None else
-                     f"{caption}, from profiles.h5; right: the balance of stresses, where the total (black) comes to the driving stress in "
-                     "steady flow.")]
-    return html.section("Profiles", *parts, *([html.paragraph(balance_sentence(balance))] if balance is not None else []))
+    parts = [
+        attempt(
+            draw,
+            (
+                f"{caption}, from profiles.h5."
+                if balance is None
+                else (
+                    f"{caption}, from profiles.h5; right: the balance of stresses, where the total (black) comes to the"
+                    " driving stress in steady flow."
+                )
+            ),
+        )
+    ]
+    return html.section(
+        "Profiles", *parts, *([html.paragraph(balance_sentence(balance))] if balance is not None else [])
+    )
 
 
 def balance_sentence(balance):
@@ -136,9 +190,12 @@ def balance_sentence(balance):
     gap, largest = np.abs(balance["total_stress"] - driving), np.nanmax(np.abs(driving))
     if not np.isfinite(gap).any() or not largest > 0.0:
         return "The balance of stresses has not been measured yet."
-    return (f"Balance of stresses: the total differs from the driving stress{' less side walls' if 'side_wall_stress' in balance else ''} by "
-            f"{np.nanmax(gap):.2g} Pa at most, {100.0 * np.nanmax(gap) / largest:.2g} % of its largest value, and by {np.nanmean(gap):.2g} Pa "
-            "on average over the height.")
+    return (
+        "Balance of stresses: the total differs from the driving"
+        f" stress{' less side walls' if 'side_wall_stress' in balance else ''} by {np.nanmax(gap):.2g} Pa at most,"
+        f" {100.0 * np.nanmax(gap) / largest:.2g} % of its largest value, and by {np.nanmean(gap):.2g} Pa on average"
+        " over the height."
+    )
 
 
 def course(run):
@@ -146,7 +203,11 @@ def course(run):
         figure = series_figure(run)
     except RunFolderError as error:
         return html.section("Course of the run", html.paragraph(f"Left out: {error}"))
-    return html.section("Course of the run", html.picture(figure, "Some columns of series.csv against time.")) if figure else ""
+    return (
+        html.section("Course of the run", html.picture(figure, "Some columns of series.csv against time."))
+        if figure
+        else ""
+    )
 
 
 def warning_section(sessions):
@@ -155,7 +216,9 @@ def warning_section(sessions):
         return ""
     body = html.listing(warnings, "warning") if warnings else html.paragraph("The run gave none.")
     remarks = sessions[-1].remarks
-    return html.section("Warnings", body, *([html.paragraph("At the end: " + "; ".join(remarks) + ".")] if remarks else []))
+    return html.section(
+        "Warnings", body, *([html.paragraph("At the end: " + "; ".join(remarks) + ".")] if remarks else [])
+    )
 
 
 def budget(run):
@@ -165,11 +228,17 @@ def budget(run):
     if not phases:
         return ""
     largest = max(phase["share"] for phase in phases.values()) or 1.0
-    rows = [(name, f"{phase['mean_seconds']:.2f}", f"{phase['largest_seconds']:.2f}", f"{100.0 * phase['share']:.1f} %",
-             html.bar(phase["share"] / largest)) for name, phase in sorted(phases.items(), key=lambda item: -item[1]["share"])
-            if phase["share"] >= 0.0005]
-    table = html.table(rows, ("phase", "mean [s]", "slowest rank [s]", "share", ""), (1, 2, 3)).replace("<td><span class=\"bar\"",
-                                                                                                      "<td class=wide><span class=\"bar\"")
+    rows = [
+        (
+            name, f"{phase['mean_seconds']:.2f}", f"{phase['largest_seconds']:.2f}", f"{100.0 * phase['share']:.1f} %",
+            html.bar(phase["share"] / largest),
+        )
+        for name, phase in sorted(phases.items(), key=lambda item: -item[1]["share"])
+        if phase["share"] >= 0.0005
+    ]
+    table = html.table(rows, ("phase", "mean [s]", "slowest rank [s]", "share", ""), (1, 2, 3)).replace(
+        "<td><span class=\"bar\"", "<td class=wide><span class=\"bar\""
+    )
     words = [f"{summary['steps_in_this_session']} steps in {summary['wall_seconds']:.4g} s on {summary['ranks']} "
              f"rank{'' if summary['ranks'] == 1 else 's'}: {summary['steps_per_second']:.4g} steps/s"]
     if summary.get("mlups"):
@@ -183,7 +252,9 @@ def case_section(run, sessions):
     parts = []
     settings = settings_in(command_of(run))
     if settings:
-        parts += [html.paragraph("Set on the command line, in place of what the case file says:"), html.listing(settings)]
+        parts += [
+            html.paragraph("Set on the command line, in place of what the case file says:"), html.listing(settings),
+        ]
     for session in sessions:
         if session.changes:
             parts += [html.paragraph(f"Changed when it went on from {session.origin}:"), html.listing(session.changes)]
@@ -201,21 +272,36 @@ def provenance(run, sessions):
     rows += facts(summary.get("provenance") or {})
     log = run.folder / "run.log"
     if log.exists():
-        rows.append(("last written", datetime.fromtimestamp(log.stat().st_mtime).astimezone().strftime("%Y-%m-%d %H:%M:%S %z")))
+        rows.append(
+            ("last written", datetime.fromtimestamp(log.stat().st_mtime).astimezone().strftime("%Y-%m-%d %H:%M:%S %z"))
+        )
     checkpoint = run.latest_checkpoint
     rows.append(("last checkpoint", checkpoint.name if checkpoint else "none"))
     if len(sessions) > 1:
-        rows += [(f"session {n}", f"{session.shape}{f'; from {session.origin}' if session.origin else ''}"
-                                  f"{f'; {session.outcome}' if session.outcome else ''}") for n, session in enumerate(sessions, 1)]
+        rows += [
+            (
+                f"session {n}",
+                f"{session.shape}{f'; from {session.origin}' if session.origin else ''}"
+                f"{f'; {session.outcome}' if session.outcome else ''}",
+            )
+            for n, session in enumerate(sessions, 1)
+        ]
     return html.section("Provenance", html.table(rows))
 
 
 def facts(found):
     """Rows of what summary.json says under `provenance`; older versions have none."""
-    rows = [(name, found[key]) for name, key in (("last session began", "started"), ("host", "host"), ("processor", "processor"),
-                                                 ("compiler", "compiler"), ("compiler flags", "compiler_flags"), ("MPI", "mpi"),
-                                                 ("HDF5", "hdf5")) if found.get(key)]
-    return rows + [(file["key"], f"{file['path']}, SHA-256 {file['sha256'] or 'not known'}") for file in found.get("inputs", ())]
+    rows = [
+        (name, found[key])
+        for name, key in (
+            ("last session began", "started"), ("host", "host"), ("processor", "processor"), ("compiler", "compiler"),
+            ("compiler flags", "compiler_flags"), ("MPI", "mpi"), ("HDF5", "hdf5"),
+        )
+        if found.get(key)
+    ]
+    return rows + [
+        (file["key"], f"{file['path']}, SHA-256 {file['sha256'] or 'not known'}") for file in found.get("inputs", ())
+    ]
 
 
 def repetition(run):
@@ -225,14 +311,23 @@ def repetition(run):
     lines = ["# the same run once more, in a new folder, from the case as it was run",
              f"{start}thalweg run {folder}/case.yaml --out NEW_FOLDER"]
     if not summary.get("finished"):
-        lines += ["# this run, on from its last checkpoint", f"{start}thalweg run {folder}/case.yaml --out {folder} --resume"]
+        lines += [
+            "# this run, on from its last checkpoint",
+            f"{start}thalweg run {folder}/case.yaml --out {folder} --resume",
+        ]
     lines += ["# its figures and this page", f"thalweg plot all {folder}", f"thalweg report {folder}"]
-    words = ("With the same version on the same kind of processor the state has the same bits, on any number of ranks. Beds and surfaces "
-             "that the case names, with paths from its folder, are needed as well, and the run or checkpoint that it begins from: move "
-             "them with the folder.")
+    words = (
+        "With the same version on the same kind of processor the state has the same bits, on any number of ranks. Beds"
+        " and surfaces that the case names, with paths from its folder, are needed as well, and the run or checkpoint"
+        " that it begins from: move them with the folder."
+    )
     return html.section("How to repeat it", html.preformatted("\n".join(lines)), html.paragraph(words))
 
 
 def footer(run):
-    sources = [name for name in ("case.yaml", "run.log", "series.csv", "summary.json", "profiles.h5") if (run.folder / name).exists()]
+    sources = [
+        name
+        for name in ("case.yaml", "run.log", "series.csv", "summary.json", "profiles.h5")
+        if (run.folder / name).exists()
+    ]
     return f"<footer>{html.paragraph('Made by thalweg report from ' + ', '.join(sources) + '.')}</footer>"

@@ -48,7 +48,9 @@ class Info(ProgramTest):
             self.assertEqual((checkpoint["time"], checkpoint["step"], checkpoint["time_step"]),
                              tuple(file["run"].attrs[name] for name in ("time", "step", "time_step")))
             datasets = {}
-            file.visititems(lambda name, item: datasets.update({name: list(item.shape)}) if isinstance(item, h5py.Dataset) else None)
+            file.visititems(
+                lambda name, item: datasets.update({name: list(item.shape)}) if isinstance(item, h5py.Dataset) else None
+            )
         self.assertEqual({entry["path"]: entry["shape"] for entry in checkpoint["datasets"]}, datasets)
         for entry in checkpoint["datasets"]:
             self.assertIn(entry["path"], text)

@@ -35,7 +35,9 @@ class Stopping(ProgramTest):
         # needs more.
         patient = os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": str(patience)}
         with open(self.folder / "said", "w", encoding="utf-8") as said:
-            process = subprocess.Popen(command, cwd=self.folder, stdout=said, stderr=subprocess.PIPE, text=True, env=patient)
+            process = subprocess.Popen(
+                command, cwd=self.folder, stdout=said, stderr=subprocess.PIPE, text=True, env=patient
+            )
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -118,7 +120,9 @@ class Stopping(ProgramTest):
         )
         self.assertEqual(process.wait(timeout=30), 4)
         said = (self.folder / "said").read_text()
-        self.assertEqual("exit code 4: the run was stopped in good order" in said, ranks > 0)   # for mpirun, which complains of it
+        self.assertEqual(
+            "exit code 4: the run was stopped in good order" in said, ranks > 0
+        )  # for mpirun, which complains of it
         self.assertEqual(self.summary("run")["reason"], "stopped on request (thalweg stop)")
         self.assertFalse((self.folder / "run/stop").exists())
         self.assertIn("run has ended", self.run_well("stop", "run").stdout)   # the next run is not meant
