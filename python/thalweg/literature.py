@@ -37,6 +37,24 @@ def zhang_wide_bed(shields, prefactor=1.0):
     return excess_power(shields, prefactor, 0.033)
 
 
+def paehtz_duran(shields, threshold=0.033):
+    """Pähtz and Durán (2020, Phys. Rev. Lett. 124, 168001): from the energy that grains lose in the bed and to each other,
+    with kappa = 0.4, a friction coefficient of the bed of 0.63 and a coefficient of collisions of 1.7, none of which is
+    fitted to transport rates in water. threshold: the Shields number at which transport ceases; by default that of
+    Zhang et al. for beds without side walls.
+    """
+    load = np.maximum(np.asarray(shields, float) - threshold, 0.0) / 0.63   # of moving grains, per area
+    return 2.0 * np.sqrt(threshold) / 0.4 * load * (1.0 + 1.7 * load)
+
+
+def old_relations(shields):
+    """The least and the most of the relations fitted to flumes: Meyer-Peter and Mueller, Wong and Parker, Fernandez Luque
+    and van Beek with both thresholds."""
+    values = [meyer_peter_mueller(shields), wong_parker(shields), fernandez_luque_van_beek(shields),
+              fernandez_luque_van_beek(shields, 0.037)]
+    return np.min(values, axis=0), np.max(values, axis=0)
+
+
 # Zhang et al. (2022), sec. 2.2: the flume. What is not printed in the text is only in its figures.
 FLUME_THRESHOLD, FLUME_THRESHOLD_ERROR = 0.026, 0.002   # of the experiment, Benavides et al.
 # (Shields number, q*, standard deviation of q* over the last 10 s, start)

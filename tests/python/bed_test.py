@@ -231,6 +231,9 @@ class Literature(unittest.TestCase):
         np.testing.assert_allclose(literature.wong_parker([0.085, 0.1408]), (0.0266, 0.1095), atol=2e-4)
         np.testing.assert_allclose(literature.fernandez_luque_van_beek(0.085, 0.037), 0.0599, atol=1e-4)
         np.testing.assert_allclose(literature.zhang_wide_bed(0.1408), 0.0354, atol=1e-4)
+        # 5 sqrt(0.04) = 1, and a load of 0.1 at 0.063 above the threshold: 0.1 (1 + 0.17).
+        np.testing.assert_allclose(literature.paehtz_duran([0.03, 0.04, 0.103], 0.04), (0.0, 0.0, 0.117), atol=1e-12)
+        np.testing.assert_allclose(literature.old_relations(0.085), (0.0266, 0.0599), atol=2e-4)
 
 
 if __name__ == "__main__":

@@ -43,7 +43,11 @@ def measure(folder, start, stop, surface):
 
 def draw_literature(axes):
     shields = np.linspace(0.02, 0.15, 400)
-    for curve, label, style in ((literature.meyer_peter_mueller, "Meyer-Peter and Müller", "-"),
+    least, most = literature.old_relations(shields)
+    axes.fill_between(shields, np.maximum(least, SMALLEST), np.maximum(most, SMALLEST), color="0.9", lw=0,
+                      label="spread of the three relations below")
+    for curve, label, style in ((literature.paehtz_duran, "Pähtz and Durán, threshold 0.033", (0, (6, 2))),
+                                (literature.meyer_peter_mueller, "Meyer-Peter and Müller", "-"),
                                 (literature.wong_parker, "Wong and Parker", "--"),
                                 (literature.fernandez_luque_van_beek, "Fernandez Luque and van Beek", "-."),
                                 (literature.zhang_wide_bed, "Zhang et al., fig. 6, prefactor as printed", ":"),
@@ -55,7 +59,7 @@ def draw_literature(axes):
 
 def draw_paper(axes):
     middle, half = literature.FLUME_THRESHOLD, literature.FLUME_THRESHOLD_ERROR
-    axes.axvspan(middle - half, middle + half, color="0.92", label="threshold of the experiment")
+    axes.axvspan(middle - half, middle + half, color="#f3dcd8", label="threshold of the experiment")
     for (shields, rate, deviation, start), mark in zip(literature.FLUME_POINTS, "^v"):
         axes.errorbar(shields, rate, deviation, fmt=mark, color="#c0392b", ms=6, capsize=3,
                       label=f"Zhang et al., flume, start: {start}")
