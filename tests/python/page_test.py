@@ -114,6 +114,8 @@ class Report(unittest.TestCase):
             "finished": True, "reason": "", "simulated_time": 2.0, "until": 2.0, "version": "0.1.0 (bbb)", "ranks": 2,
             "wall_seconds": 40.0, "steps_in_this_session": 100, "steps_per_second": 2.5, "phases": phases,
             "bed": {"porosity": 0.4, "bed_height": 0.0123}, "units": {"bed_height": "m", "porosity": "1"},
+            "provenance": {"host": "node7", "compiler": "GNU 12.2.0", "inputs": [
+                {"key": "solids.0.stl", "path": "../sill.stl", "sha256": "ab12"}]},
         }
         for finished, words in (
             (True, "Finished at 2 s."), (False, "Not finished, stopped by thalweg stop: at 2 of 2 s."),
@@ -124,6 +126,7 @@ class Report(unittest.TestCase):
             self.assertIn(words, page.text)
             self.assertRegex(page.text, r"links 30\.00 31\.00 75\.0 %")
             self.assertRegex(page.text, r"height of the bed 0\.0123 m")
+            self.assertIn("host node7 compiler GNU 12.2.0 solids.0.stl ../sill.stl, SHA-256 ab12", page.text)
             self.assertIn("mpirun -n 2 thalweg run", page.text)
             self.assertEqual("--resume" in page.text, not finished)
 
