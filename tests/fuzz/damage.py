@@ -291,13 +291,16 @@ HDF5 = [
 ]
 
 
+LABELS = ("units", "components", "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST")
+
+
 def contents_of_hdf5(data):
-    """All that the program reads of a file, but the checksums and units; None if it cannot be read."""
+    """All that the program reads of a file, but the checksums; None if it cannot be read. It reads no labels."""
     found = {}
 
     def add(name, item):
         for key, value in item.attrs.items():
-            if key not in ("checksum", "unit"):
+            if key not in ("checksum", *LABELS):
                 found[f"{name}@{key}"] = str(value)
         if isinstance(item, h5py.Dataset):
             found[name] = (str(item.dtype), item.shape, item[()].tobytes() if item.size < 1 << 24 else None)

@@ -156,7 +156,7 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
                              (self.folder / "straight" / file).read_bytes(), file)
         with h5py.File(self.folder / "straight/profiles.h5") as profiles:
             group = profiles["fluid_statistics"]
-            self.assertEqual(group["velocity"].attrs["unit"], b"m/s")
+            self.assertEqual(group["velocity"].attrs["units"], b"m/s")
             self.assertEqual(group["reynolds_stress"].attrs["components"], b"xx yy zz xy xz yz")
             self.assertEqual(group["section_velocity"].shape, (26, 21, 3))
             numpy.testing.assert_allclose(group["section_velocity"][()].mean(axis=1), group["velocity"][()], atol=1e-11)
