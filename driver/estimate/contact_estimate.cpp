@@ -146,7 +146,7 @@ double stress_ratio_at_base(const Case& c) {
   if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
   const ReferenceGrain grain = reference_grain(c);
   const double height = settled_height(c), depth = c.domain.size.z() - height;
-  if (height < 2.0 * grain.diameter || depth < 0.0 || c.disks) return 0.0;
+  if (height < grain.diameter || depth < 0.0 || c.disks) return 0.0;
   const double water = has_fluid(c) ? c.fluid.density : 0.0;
   const double excess = settled_fraction(c) * (grain.density - water);
   if (excess <= neutral_density * water) return 0.0;

@@ -155,7 +155,14 @@ Warnings laminar_flow(const Case& c) {
        {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}}}};
 }
 
+// By the key that the case has: where the slope follows from a Shields number, that one.
 Change slope_change(const Case& c, double slope) {
+  if (c.filled_in.flow.find("gravity.slope") != std::string::npos) {
+    const FlowNumbers flow = flow_numbers(c);
+    const double share = std::sin(std::atan(slope)) / std::sin(std::atan(flow.slope));
+    return number_change("flow.shields_number", share * flow.shields_hydraulic, 2, Rounding::down,
+                         [](Case& other, double to) { other.gravity.slope = slope_for(flow_numbers(other), to); });
+  }
   if (!c.gravity.vector)
     return number_change("gravity.slope", slope, 2, Rounding::down,
                          [](Case& other, double to) { other.gravity.slope = to; });

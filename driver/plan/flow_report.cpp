@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::driver {
@@ -15,6 +16,8 @@ namespace thalweg::driver {
 namespace {
 
 using Lines = std::vector<std::string>;
+
+constexpr double fully_placed = 0.95;  // share of the floor from which grains need not spread
 
 std::string on_lattice(const Case& c, double speed) {
   const double lattice = speed / units_of(c).velocity();
@@ -74,14 +77,29 @@ void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
                               flow.friction_velocity));
 }
 
+// The least share of the floor that the region of a population covers; the grains spread from there over all of it.
+double placed_share(const Case& c) {
+  double share = 1.0;
+  for (const beds::Population& population : c.grains)
+    if (const auto& region = population.placement.region) {
+      const Vec3 sides = region->upper - region->lower;
+      share = std::min(share, sides.x() * sides.y() / (c.domain.size.x() * c.domain.size.y()));
+    }
+  return share;
+}
+
 // Empty where the grains make no bed of at least their diameter.
 std::string bed_text(const Case& c) {
   if (c.grains.empty() || c.disks || periodic_axes(c.domain)[2] || gravity_vector(c.gravity).z() >= 0.0) return {};
   if (has_fluid(c) && !std::isfinite(flow_numbers(c).depth)) return {};
   const double height = settled_height(c), diameter = reference_grain(c).diameter;
   if (height < diameter) return {};
-  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g})", height,
-                     height / diameter, settled_fraction(c));
+  const double placed = placed_share(c);
+  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}){}", height,
+                     height / diameter, settled_fraction(c),
+                     placed < fully_placed
+                         ? fmt::format("; placed over {:.2g} % of the floor, it spreads", 100.0 * placed)
+                         : std::string());
 }
 
 void add_stress_at_base(const Case& c, Lines& lines) {

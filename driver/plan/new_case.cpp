@@ -131,6 +131,7 @@ std::string yaml_of(const Experiment& experiment, const Draft& draft) {
           "   # of the bed that the grains make; check prints the slope and the height\n";
   text += fmt::format(
       "grains:\n  - fill: {{layers: {:g}}}   # diameters of settled bed\n{}    density: {:g}   # kg/m^3\n"
+      "    # All of the floor, and as high as they need: with another domain.size, change the first two numbers, too.\n"
       "    placement: {{pattern: dense, region: {{lower: [0, 0, 0], upper: [{:.9g}, {:.9g}, {:.4g}]}}}}\n",
       experiment.layers, diameter_text(experiment), experiment.density, draft.length, draft.width,
       packed_height(experiment, draft, grains.median));

@@ -58,7 +58,7 @@ std::vector<Advice> developed_start(const Case& c, const FlowEstimate& flow) {
     other.initial.fluid.log_profile.emplace();
     other.filled_in.profile = {true, true, true};
   });
-  return {{{start}, "begin with a developed flow, "}};
+  return {{{start}, "a start near the developed flow, "}};
 }
 
 Warnings short_run(const Case& c) {

@@ -11,9 +11,13 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
-constexpr double lightest_solid = 30.0;   // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
-constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
+constexpr double largest_boulder = 0.5;    // m; a bed of larger ones in a resolved flow is a bed in millimetres
+constexpr double lightest_solid = 30.0;    // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
+constexpr double lightest_liquid = 300.0;  // kg/m^3
+constexpr double densest_gas = 20.0;       // kg/m^3
+constexpr double thinnest_gas = 5e-6;      // m^2/s; the viscosity of air is 1.5e-5, that of water 1e-6
+constexpr double steepest_bed = 1.0;       // a tangent; no bed lies at 45 degrees
+constexpr double roughest_contact = 1.5;   // 1; friction of dry solids is below, an angle in degrees above
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
@@ -44,6 +48,30 @@ Warnings densities_in_grams(const Case& c) {
   return found;
 }
 
+// Beside grains in kg/m^3. A gas so dense and with so little viscosity is under a pressure of tens of bars.
+Warnings liquid_in_grams(const Case& c) {
+  if (c.system != SystemKind::resolved || c.grains.empty() || reference_grain(c).density < lightest_liquid ||
+      c.fluid.density > densest_gas || c.fluid.kinematic_viscosity > thinnest_gas)
+    return {};
+  return {{fmt::format("A fluid of {0:g} kg/m^3 with the viscosity of a liquid looks like one of {0:g} g/cm^3, which "
+                       "are {1:g} kg/m^3",
+                       c.fluid.density, 1000.0 * c.fluid.density),
+           {{{exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
+                           [](Case& other, double to) { other.fluid.density = to; })},
+             {}}}}};
+}
+
+Warnings slope_in_degrees(const Case& c) {
+  const double slope = c.gravity.vector ? 0.0 : std::abs(c.gravity.slope.value_or(0.0));
+  if (slope <= steepest_bed || slope > steepest_friction || !c.filled_in.flow.empty()) return {};
+  const double tangent = std::tan(*c.gravity.slope * std::numbers::pi / 180.0);
+  return {
+      {fmt::format("gravity.slope = {:g} is a bed at {:.3g} degrees, as the slope is the tangent of its angle; it "
+                   "looks like an angle in degrees",
+                   *c.gravity.slope, std::atan(slope) * 180.0 / std::numbers::pi),
+       {{{exact_change("gravity.slope", tangent, 3, [](Case& other, double to) { other.gravity.slope = to; })}, {}}}}};
+}
+
 Warnings friction_in_degrees(const Case& c) {
   Warnings found;
   const auto look = [&](const char* key, double value, const Setter& set) {
@@ -61,6 +89,8 @@ Warnings friction_in_degrees(const Case& c) {
 
 }  // namespace
 
-std::vector<WarningRule> unit_rules() { return {lengths_in_millimetres, densities_in_grams, friction_in_degrees}; }
+std::vector<WarningRule> unit_rules() {
+  return {lengths_in_millimetres, densities_in_grams, liquid_in_grams, slope_in_degrees, friction_in_degrees};
+}
 
 }  // namespace thalweg::driver
