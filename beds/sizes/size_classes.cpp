@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t most_single_sizes = 10;
 constexpr int fewest_classes = 4, most_classes = 12;
 constexpr double millimetre = 1e-3;
-constexpr double same_size = 1e-9;  // of a diameter: sieves as wide to rounding are one
+constexpr double same_sieve = 1e-9;  // of a diameter: sieves as wide to rounding are one
 
 std::vector<double> around_each(std::span<const SizeCount> sizes) {
   const double half_phi = std::sqrt(2.0);
@@ -45,7 +45,7 @@ std::vector<double> by_suitable_phi(double smallest, double largest) {
 std::vector<double> size_class_edges(std::span<const SizeCount> sizes, std::vector<double> sieves) {
   const double smallest = sizes.front().diameter, largest = sizes.back().diameter;
   std::sort(sieves.begin(), sieves.end());
-  sieves.erase(std::unique(sieves.begin(), sieves.end(), [](double a, double b) { return b <= (1.0 + same_size) * a; }),
+  sieves.erase(std::unique(sieves.begin(), sieves.end(), [](double a, double b) { return b <= (1.0 + same_sieve) * a; }),
                sieves.end());
   if (sieves.size() >= 2 && sieves.front() <= smallest && sieves.back() >= largest) return sieves;
   if (sizes.size() <= most_single_sizes) return around_each(sizes);
