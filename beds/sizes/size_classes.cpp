@@ -45,8 +45,9 @@ std::vector<double> by_suitable_phi(double smallest, double largest) {
 std::vector<double> size_class_edges(std::span<const SizeCount> sizes, std::vector<double> sieves) {
   const double smallest = sizes.front().diameter, largest = sizes.back().diameter;
   std::sort(sieves.begin(), sieves.end());
-  sieves.erase(std::unique(sieves.begin(), sieves.end(), [](double a, double b) { return b <= (1.0 + same_sieve) * a; }),
-               sieves.end());
+  sieves.erase(
+      std::unique(sieves.begin(), sieves.end(), [](double a, double b) { return b <= (1.0 + same_sieve) * a; }),
+      sieves.end());
   if (sieves.size() >= 2 && sieves.front() <= smallest && sieves.back() >= largest) return sieves;
   if (sizes.size() <= most_single_sizes) return around_each(sizes);
   return by_suitable_phi(smallest, largest);
