@@ -119,10 +119,11 @@ void warn_of_mixed_densities(const Case& c, Sentences& found) {
   const double stress = stress_on_bed(c), g = gravity_vector(c.gravity).norm();
   std::vector<Own> numbers;
   bool mixed = false;
-  for (const std::size_t p : free_populations(c)) {
+  const auto populations = free_populations(c);
+  for (const std::size_t p : populations) {
     const beds::Population& grains = c.grains[p];
     if (grains.held()) return;  // and so are all
-    mixed = mixed || grains.density != c.grains[free_populations(c).front()].density;
+    mixed = mixed || grains.density != c.grains[populations.front()].density;
     const double weight = (grains.density - c.fluid.density) * g * grains.diameter;
     if (grains.density > (1.0 + neutral_density) * c.fluid.density)
       numbers.push_back({stress / weight, fmt::format("{:.3g} for grains.{} ({:g} kg/m^3, {:.4g} m)", stress / weight,

@@ -11,13 +11,13 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5;    // m; a bed of larger ones in a resolved flow is a bed in millimetres
-constexpr double lightest_solid = 30.0;    // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
-constexpr double lightest_liquid = 300.0;  // kg/m^3
-constexpr double densest_gas = 20.0;       // kg/m^3
-constexpr double thinnest_gas = 5e-6;      // m^2/s; the viscosity of air is 1.5e-5, that of water 1e-6
-constexpr double steepest_bed = 1.0;       // a tangent; no bed lies at 45 degrees
-constexpr double roughest_contact = 1.5;   // 1; friction of dry solids is below, an angle in degrees above
+constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
+constexpr double lightest_solid = 30.0;   // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
+constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
+constexpr double densest_gas = 20.0;      // kg/m^3
+constexpr double thinnest_gas = 5e-6;     // m^2/s; the viscosity of air is 1.5e-5, that of water 1e-6
+constexpr double steepest_bed = 1.0;      // a tangent; no bed lies at 45 degrees
+constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
@@ -50,7 +50,7 @@ Warnings densities_in_grams(const Case& c) {
 
 // Beside grains in kg/m^3. A gas so dense and with so little viscosity is under a pressure of tens of bars.
 Warnings liquid_in_grams(const Case& c) {
-  if (c.system != SystemKind::resolved || c.grains.empty() || reference_grain(c).density < lightest_liquid ||
+  if (c.system != SystemKind::resolved || c.grains.empty() || reference_grain(c).density < lightest_grain ||
       c.fluid.density > densest_gas || c.fluid.kinematic_viscosity > thinnest_gas)
     return {};
   return {{fmt::format("A fluid of {0:g} kg/m^3 with the viscosity of a liquid looks like one of {0:g} g/cm^3, which "
