@@ -135,16 +135,20 @@ void add_new(CLI::App& app, Command& command, Texts& texts) {
   number("--slope", e.slope, "Tangent of the bed's angle");
   number("--depth", e.depth, "Of the water above the bed, m");
   number("--width", e.width, "Between side walls, m (default: periodic across the stream)");
+  number("--periodic-width", e.periodic_width,
+         "Of the box without side walls, m (default: what the accuracy asks for)");
+  number("--length", e.length,
+         "Of the box, which is periodic along the stream, m (default: what the accuracy asks for)");
   number("--layers", e.layers, "Thickness of the bed in diameters");
   number("--density", e.density, "Of the grains, kg/m^3");
-  number("--fluid-density", e.fluid_density, "kg/m^3");
+  number("--fluid-density", e.given_fluid_density, "kg/m^3 (default: 1000, water)");
   number("--viscosity", e.viscosity, "Kinematic, m^2/s");
   add->add_option("--accuracy", e.accuracy, "look: 6 cells across the smallest grain, measure: 10, publish: 15")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Accuracy>{
           {"look", Accuracy::look}, {"measure", Accuracy::measure}, {"publish", Accuracy::publish}}))
       ->type_name("look|measure|publish");
   number("--cores", e.cores, "At hand");
-  number("--hours", e.hours, "At hand; the box is made smaller for them");
+  number("--hours", e.hours, "At hand; sides of the box that are not given become shorter for them");
   add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 

@@ -17,7 +17,7 @@ namespace thalweg::driver {
 namespace {
 
 // Limits beyond which plan and case warnings advise a shorter step: docs/stability.md.
-constexpr double accurate_excess_near_bodies = 0.15, accurate_excess = 0.029;
+constexpr double accurate_excess = 0.029;
 
 // Fills in the start that check advises: the log law that a flow over grains of this size comes to.
 void fill_in_profile(Case& c) {

@@ -11,6 +11,9 @@ inline constexpr double accurate_lattice_velocity = 0.1;
 
 inline constexpr double largest_compression = 0.05;  // 1, of the fluid by its weight, from top to bottom
 
+// tau - 1/2, up to which trt near bodies keeps drag and walls with bouzidi links.
+inline constexpr double accurate_excess_near_bodies = 0.15;
+
 // Notes what a case leaves open, and fills that in. Needs the populations and surfaces of a case that check_box()
 // accepts.
 void complete(Case& c);
@@ -19,9 +22,9 @@ void complete(Case& c);
 void fill_in(Case& c);
 
 // s, the longest step in which the flow covers accurate_lattice_velocity, walls and grains keep their accuracy (tau -
-// 1/2 of at most 0.15 with trt near bodies, else 0.029), and the weight of the fluid under gravity.mode: full
-// compresses it by at most largest_compression; two digits, rounded down. It does not depend on the time at which the
-// run ends.
+// 1/2 of at most accurate_excess_near_bodies, or 0.029 without trt near bodies), and the weight of the fluid under
+// gravity.mode: full compresses it by at most largest_compression; two digits, rounded down. It does not depend on the
+// time at which the run ends.
 double suitable_time_step(const Case& c);
 
 }  // namespace thalweg::driver

@@ -26,13 +26,15 @@ namespace thalweg::driver {
 
 namespace {
 
+constexpr double limit_rounding = 1e-9;  // of a number that is chosen to be at its limit
+
 // The largest velocity expected, cells a step.
 double expected_lattice_velocity(const Case& c) { return flow_estimate(c).speed / units_of(c).velocity(); }
 
 Warnings fast_flow(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   const double lattice_velocity = flow.speed / units_of(c).velocity();
-  if (!(lattice_velocity > accurate_lattice_velocity)) return {};
+  if (!(lattice_velocity * (1.0 - limit_rounding) > accurate_lattice_velocity)) return {};
   return {{fmt::format("The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step; results are accurate "
                        "below {:g} and the limit is 0.173",
                        flow.speed, words_of(flow.cause), lattice_velocity, accurate_lattice_velocity),
@@ -43,7 +45,7 @@ Warnings fast_flow(const Case& c) {
 Warnings compression(const Case& c) {
   const double compression =
       3.0 * std::abs(gravity_vector(c.gravity).z()) / units_of(c).acceleration() * c.domain.size[2] / c.domain.spacing;
-  if (c.gravity.mode != GravityMode::full || !(compression > largest_compression)) return {};
+  if (c.gravity.mode != GravityMode::full || !(compression * (1.0 - limit_rounding) > largest_compression)) return {};
   const Change step =
       fluid_step_change(fluid_time_step(c) * std::sqrt(largest_compression / compression), 2, Rounding::down);
   const Change mode =
@@ -91,7 +93,7 @@ Warnings unstable_collision(const Case& c) {
 
 Warnings long_relaxation(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  if (excess <= 1.0) return {};
+  if (excess * (1.0 - limit_rounding) <= 1.0) return {};
   return {{fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy", excess + 0.5),
            {{{excess_change(c, 1.0, Rounding::down)}, {}}},
            "a shorter fluid.time_step"}};
@@ -135,7 +137,7 @@ Remedy finer_cells_and_step(const Case& c, double excess) {
 
 Warnings unmapped_relaxation(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  if (!c.fluid.subgrid().on() || excess >= least_mapped_excess * (1.0 - 1e-9)) return {};
+  if (!c.fluid.subgrid().on() || excess >= least_mapped_excess * (1.0 - limit_rounding)) return {};
   return {{fmt::format("The relaxation time is only {:.2g} above 1/2, and stability has not been tested below {:g} "
                        "(docs/stability.md)",
                        excess, least_mapped_excess),
@@ -261,12 +263,12 @@ Warnings floating_grains(const Case& c) {
 // 19 % too low at 0.5; with trt and bouzidi 4 % too low at 0.1 and 15 % at 0.5
 // (benchmarks/validation/simple_cubic_arrays).
 Warnings inexact_links(const Case& c) {
-  const double excess = relaxation_time(c) - 0.5;
+  const double excess = (relaxation_time(c) - 0.5) * (1.0 - limit_rounding);
   const bool bgk = c.fluid.collision == lbm::CollisionModel::bgk,
              trt = lbm::traits_of(c.fluid.collision).is_trt_near_bodies,
              bouzidi = c.coupling.links == bodies::LinkRule::bouzidi;
   if (c.grains.empty() || smagorinsky(c) || excess < 0.0299) return {};
-  if (!bgk && !(trt && bouzidi && excess > 0.15)) return {};
+  if (!bgk && !(trt && bouzidi && excess > accurate_excess_near_bodies)) return {};
   Remedy remedy;
   if (bgk) remedy.push_back(trt_change());
   remedy.push_back(

@@ -11,12 +11,8 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
-constexpr double lightest_solid = 30.0;   // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
+constexpr double largest_boulder = 0.5; // m; a bed of larger ones in a resolved flow is a bed in millimetres
 constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
-constexpr double densest_gas = 20.0;      // kg/m^3
-constexpr double thinnest_gas = 5e-6;     // m^2/s; the viscosity of air is 1.5e-5, that of water 1e-6
-constexpr double steepest_bed = 1.0;      // a tangent; no bed lies at 45 degrees
 constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees

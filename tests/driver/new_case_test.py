@@ -19,6 +19,7 @@ import program
 from program import ProgramTest
 
 GRAVITY = 9.81
+EXPERIMENT = ["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03]   # gravel in water
 
 
 def log_uniform(chance, low, high):
@@ -109,12 +110,77 @@ class NewCase(ProgramTest):
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--slope", 0.1], "two of"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--density", 900], "make no bed"),
             (["--sieve", "1:2:3", "--shields", 0.05, "--depth", 0.03], "is no grading curve"),
-            (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "slope"),
+            (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "no slope gives --shields 5"),
+            (["--diameter", 0.005, "--shields", 0.5, "--depth", 0.01], "would slide as a whole: give --shields 0."),
+            (["--diameter", 0.005, "--slope", 0.5, "--depth", 0.03], "would slide as a whole: give --slope 0."),
+            (["--diameter", 0.005, "--shields", 0.1, "--slope", 0.01, "--width", 0.02], "however deep"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.002], "less than a diameter"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.006, "--layers", 40], "or fewer --layers"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--width", 0.004], "at least --width 0.00503"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--length", 0.009], "at least --length 0.0101"),
+            (
+                [*EXPERIMENT, "--width", 0.05, "--periodic-width", 0.05],
+                "the width is given twice: --width between side walls, or --periodic-width",
+            ),
         ]:
-            result = self.new(*words)
-            self.assertEqual(result.returncode, 2, words)
-            self.assertIn(reason, result.stderr)
-            self.assertFalse(self.case.exists())
+            self.assert_refused_in_words(words, reason)
+
+    def assert_refused_in_words(self, words, reason):
+        """In those of the options, and not of keys of a case that nobody has written."""
+        result = self.new(*words)
+        self.assertEqual(result.returncode, 2, words)
+        self.assertIn(reason, result.stderr)
+        self.assertNotRegex(result.stderr, r"case\.yaml|[a-z]_?[a-z]*\.[a-z_]+[ :=]")
+        self.assertFalse(self.case.exists())
+
+    def test_numbers_in_other_units_are_refused(self):
+        for words, reason in [
+            (["--diameter", 5, "--shields", 0.05, "--depth", 30], "5 mm are 0.005 m"),
+            (["--diameter", 0.5, "--shields", 0.05, "--depth", 0.03], "0.5 mm are 0.0005 m"),
+            (["--sieve", "2:0,4:0.5,8:1", "--shields", 0.05, "--depth", 0.03], "--sieve is in m"),
+            (["--diameter", 0.005, "--shields", 0.05, "--depth", 40], "give --depth 0.04"),
+            ([*EXPERIMENT, "--width", 10], "give --width 0.01"),
+            ([*EXPERIMENT, "--periodic-width", 30], "give --periodic-width 0.03"),
+            ([*EXPERIMENT, "--length", 60], "give --length 0.06"),
+            ([*EXPERIMENT, "--density", 2.65], "give --density 2650"),
+            ([*EXPERIMENT, "--fluid-density", 1], "give --fluid-density 1000"),
+            ([*EXPERIMENT, "--viscosity", 0.001], "give --viscosity 1e-06"),
+            (["--diameter", 0.005, "--slope", 2, "--depth", 0.03], "in degrees, give --slope 0.0349"),
+            ([*EXPERIMENT, "--layers", 0.025], "give --layers 5"),
+        ]:
+            self.assert_refused_in_words(words, reason)
+        # An oil as viscous as that is no mistake, and nor is a flume a metre wide.
+        self.assertEqual(self.new(*EXPERIMENT, "--fluid-density", 960, "--viscosity", 0.001).returncode, 0)
+        self.assertEqual(self.new(*EXPERIMENT, "--width", 1).returncode, 0)
+
+    def test_the_box_may_be_given(self):
+        """Its sides are the whole numbers of cells nearest to what is asked for, whatever the hours."""
+        self.assertEqual(self.new(*EXPERIMENT, "--length", 0.1, "--periodic-width", 0.03).returncode, 0)
+        domain = yaml.safe_load(self.case.read_text())["domain"]
+        self.assertEqual(domain["boundaries"]["y"], "periodic")
+        for side, asked in zip(domain["size"], (0.1, 0.03)):
+            self.assertAlmostEqual(side, asked, delta=0.51 * domain["spacing"])
+        cost = json.loads(self.thalweg("check", self.case, "--json").stdout)["figures"]["core_seconds"]
+        result = self.new(*EXPERIMENT, "--length", 0.1, "--hours", 0.8 * cost / 3600)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        length, width = yaml.safe_load(self.case.read_text())["domain"]["size"]
+        self.assertAlmostEqual(length, 0.1, delta=0.51 * domain["spacing"])
+        self.assertLess(width, 0.029)
+
+    def test_viscous_fluids(self):
+        """Of a slow flow drag is within some percent with trt, links cli and no subgrid model (docs/input.md, "Links"),
+        and check has no warning; also where the step is at its limit, tau - 1/2 = 0.15."""
+        for accuracy, diameter, viscosity in [("look", 0.005, 1e-3), ("measure", 0.001, 1e-4), ("publish", 0.003, 5e-5)]:
+            with self.subTest(diameter=diameter):
+                result = self.new("--diameter", diameter, "--density", 1190, "--fluid-density", 960, "--viscosity",
+                                  viscosity, "--shields", 0.2, "--depth", 5 * diameter, "--accuracy", accuracy)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                case = yaml.safe_load(self.case.read_text())
+                self.assertEqual((case["fluid"]["collision"], case["fluid"]["subgrid_model"]), ("trt", "none"))
+                self.assertEqual(case["coupling"], {"links": "cli"})
+                self.assertEqual(json.loads(self.run_well("check", self.case, "--json").stdout)["warnings"], [])
+        self.assertEqual(self.new(*EXPERIMENT).returncode, 0)
+        self.assertNotIn("coupling", yaml.safe_load(self.case.read_text()))   # water has the defaults
 
     def test_a_file_is_not_overwritten(self):
         words = ["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03]
