@@ -1,8 +1,6 @@
 #include "driver/plan/case_warnings.hpp"
 
-#include "driver/case/axes.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
@@ -10,11 +8,13 @@
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/stability.hpp"
 #include "driver/input/run_context.hpp"
+#include "driver/plan/boundary_warnings.hpp"
 #include "driver/plan/consistent_remedy.hpp"
 #include "driver/plan/contact_warnings.hpp"
 #include "driver/plan/drive_warnings.hpp"
 #include "driver/plan/plan_warnings.hpp"
 #include "driver/plan/remedy.hpp"
+#include "driver/plan/solid_warnings.hpp"
 #include "driver/plan/unit_warnings.hpp"
 
 #include <fmt/format.h>
@@ -187,46 +187,6 @@ Warnings sliding_bed(const Case& c) {
        "a smaller slope"}};
 }
 
-constexpr double suspiciously_long = 10.0;  // boxes; a file in millimetres is a thousand times too large
-
-Warnings large_solids(const Case& c) {
-  Warnings found;
-  for (std::size_t n = 0; n < c.solids.size(); ++n) {
-    const SolidCase& solid = c.solids[n];
-    if (solid.stl.empty()) continue;
-    const bodies::Extent extent = extent_of(solid);
-    const Vec3 boxes = (extent.upper - extent.lower).cwiseQuotient(c.domain.size);
-    int axis = 0;
-    if (boxes.maxCoeff(&axis) <= suspiciously_long) continue;
-    found.push_back(
-        fmt::format("The surface solids.{0} is {1:.4g} m long along {2}, {3:.3g} times the box: if its file is in "
-                    "millimetres, consider solids.{0}.scale: {4:.9g}.",
-                    n, extent.upper[axis] - extent.lower[axis], axis_name[axis], boxes[axis], 1e-3 * solid.scale));
-  }
-  return found;
-}
-
-// Such a solid does nothing, unless it moves into the box.
-Warnings absent_solids(const Case& c) {
-  Warnings found;
-  for (std::size_t n = 0; n < c.solids.size(); ++n) {
-    if (c.solids[n].motion) continue;
-    const bodies::Extent extent = extent_of(c.solids[n]);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (periodic_axes(c.domain)[static_cast<std::size_t>(axis)]) continue;
-      if (extent.upper[axis] > 0.0 && extent.lower[axis] < c.domain.size[axis]) continue;
-      found.push_back(fmt::format(
-          "The solid solids.{} lies outside the box, from {:.4g} to {:.4g} m along {} where the box reaches "
-          "from 0 to {:g} m, and does nothing: consider {}.",
-          n, extent.lower[axis], extent.upper[axis], axis_name[axis], c.domain.size[axis],
-          c.solids[n].sphere ? fmt::format("another solids.{}.sphere.centre in m", n)
-                             : fmt::format("solids.{0}.translate in m, or another solids.{0}.scale", n)));
-      break;
-    }
-  }
-  return found;
-}
-
 // Fewer cells than this across a grain do not resolve the flow around it.
 constexpr double barely_resolved = 5.0;
 
@@ -327,15 +287,33 @@ Warnings with_fluid(const Case& c) {
   return has_fluid(c) ? rule(c) : Warnings{};
 }
 
-// Rules in the order of their weight: case_warnings.hpp.
-std::vector<WarningRule> all_rules() {
+// Rules in the order of their weight: case_warnings.hpp. Where lengths are in another unit, the others would advise to
+// refine what is a thousand times too large.
+std::vector<WarningRule> rules_for(const Case& c) {
   std::vector<WarningRule> rules = unit_rules();
-  for (const WarningRule rule :
-       {drives, large_solids, absent_solids, with_fluid<floating_grains>, sliding_bed, with_fluid<fast_flow>,
-        with_fluid<compression>, with_fluid<unstable_collision>, with_fluid<long_relaxation>,
-        with_fluid<unmapped_relaxation>, with_fluid<bulk_relaxation>, fast_model_fluid, with_fluid<laminar_flow>,
-        with_fluid<coarse_cells>, with_fluid<slow_seepage>, with_fluid<inexact_links>, overlap_warnings,
-        rebound_warnings, observer_warnings})
+  if (has_other_lengths(c)) return rules;
+  for (const WarningRule rule : {drives,
+                                 large_solids,
+                                 absent_solids,
+                                 with_fluid<swapped_floor>,
+                                 with_fluid<inlets>,
+                                 with_fluid<outlets>,
+                                 with_fluid<floating_grains>,
+                                 sliding_bed,
+                                 with_fluid<fast_flow>,
+                                 with_fluid<compression>,
+                                 with_fluid<unstable_collision>,
+                                 with_fluid<long_relaxation>,
+                                 with_fluid<unmapped_relaxation>,
+                                 with_fluid<bulk_relaxation>,
+                                 fast_model_fluid,
+                                 with_fluid<laminar_flow>,
+                                 with_fluid<coarse_cells>,
+                                 with_fluid<slow_seepage>,
+                                 with_fluid<inexact_links>,
+                                 overlap_warnings,
+                                 rebound_warnings,
+                                 observer_warnings})
     rules.push_back(rule);
   const std::vector<WarningRule> plan = plan_rules();
   rules.insert(rules.end(), plan.begin(), plan.end());
@@ -344,8 +322,14 @@ std::vector<WarningRule> all_rules() {
 
 }  // namespace
 
-std::vector<std::string> warnings(const Case& c) { return ConsistentRemedies(c, all_rules()).sentences(); }
+std::vector<std::string> warnings(const Case& c) {
+  std::vector<std::string> found = ConsistentRemedies(c, rules_for(c)).sentences();
+  if (has_other_lengths(c)) return found;
+  const std::vector<std::string> solids = solids_in_the_lattice(c);
+  found.insert(found.begin(), solids.begin(), solids.end());
+  return found;
+}
 
-Remedy first_remedy(const Case& c) { return ConsistentRemedies(c, all_rules()).first(); }
+Remedy first_remedy(const Case& c) { return ConsistentRemedies(c, rules_for(c)).first(); }
 
 }  // namespace thalweg::driver

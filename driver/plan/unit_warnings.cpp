@@ -1,6 +1,7 @@
 #include "driver/plan/unit_warnings.hpp"
 
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/plan/boundary_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -11,9 +12,12 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5; // m; a bed of larger ones in a resolved flow is a bed in millimetres
+constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
 constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
 constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
+constexpr double widest_cell = 0.05;      // m
+constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;             // kg/m^3, m^2/s
+constexpr double least_in_centimetres = 900.0, most_in_centimetres = 1000.0;  // m/s^2
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
@@ -25,6 +29,34 @@ Warnings lengths_in_millimetres(const Case& c) {
       fmt::format("The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm are "
                   "{:g} m.",
                   diameter, diameter, 1e-3 * diameter)};
+}
+
+// A liquid in SI units in cells so wide: metres of it cannot be resolved.
+Warnings box_in_millimetres(const Case& c) {
+  if (!has_fluid(c) || c.domain.spacing < widest_cell || c.fluid.density < lightest_liquid ||
+      c.fluid.kinematic_viscosity > thickest_liquid)
+    return {};
+  return {fmt::format(
+      "The box of {:g} x {:g} x {:g} m has cells {:g} m wide, which looks like millimetres: lengths are in m, and "
+      "domain.spacing: {:g} mm is {:g} m.",
+      c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), c.domain.spacing, c.domain.spacing,
+      1e-3 * c.domain.spacing)};
+}
+
+Warnings gravity_in_centimetres(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (gravity.norm() < least_in_centimetres || gravity.norm() > most_in_centimetres) return {};
+  const Change change = c.gravity.vector
+                            ? word_change("gravity.vector",
+                                          fmt::format("[{:.9g}, {:.9g}, {:.9g}]", gravity.x() / 100.0,
+                                                      gravity.y() / 100.0, gravity.z() / 100.0),
+                                          [gravity](Case& other) { other.gravity.vector = gravity / 100.0; })
+                            : exact_change("gravity.magnitude", gravity.norm() / 100.0, 6,
+                                           [](Case& other, double to) { other.gravity.magnitude = to; });
+  return {{fmt::format("Gravity of {:g} m/s^2 looks like {:g} cm/s^2, which are {:g} m/s^2", gravity.norm(),
+                       gravity.norm(), gravity.norm() / 100.0),
+           {{{change}, {}}},
+           "the value in m/s^2"}};
 }
 
 Warnings densities_in_grams(const Case& c) {
@@ -68,6 +100,39 @@ Warnings slope_in_degrees(const Case& c) {
        {{{exact_change("gravity.slope", tangent, 3, [](Case& other, double to) { other.gravity.slope = to; })}, {}}}}};
 }
 
+// Angles in radians that are more than a turn.
+Warnings angles_in_degrees(const Case& c) {
+  Warnings found;
+  const auto look = [&](const std::string& key, double value, const Setter& set) {
+    if (std::abs(value) <= 2.0 * std::numbers::pi * (1.0 + 1e-6)) return;
+    const double angle = value * std::numbers::pi / 180.0;
+    found.push_back({fmt::format("{} = {:g} is in radians, {:.3g} turns, and looks like an angle in degrees", key,
+                                 value, value / (2.0 * std::numbers::pi)),
+                     {{{exact_change(key, angle, 6, set)}, {}}}});
+  };
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    if (c.grains[n].orientation)
+      look(fmt::format("grains.{}.orientation.angle", n), c.grains[n].orientation->angle,
+           [n](Case& other, double to) { other.grains[n].orientation->angle = to; });
+    if (c.grains[n].motion && c.grains[n].motion->oscillation)
+      look(fmt::format("grains.{}.motion.oscillation.phase", n), c.grains[n].motion->oscillation->phase,
+           [n](Case& other, double to) { other.grains[n].motion->oscillation->phase = to; });
+  }
+  for (std::size_t n = 0; n < c.solids.size(); ++n)
+    if (c.solids[n].motion && c.solids[n].motion->oscillation)
+      look(fmt::format("solids.{}.motion.oscillation.phase", n), c.solids[n].motion->oscillation->phase,
+           [n](Case& other, double to) { other.solids[n].motion->oscillation->phase = to; });
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (c.walls[n].oscillation)
+      look(fmt::format("walls.{}.oscillation.phase", n), c.walls[n].oscillation->phase,
+           [n](Case& other, double to) { other.walls[n].oscillation->phase = to; });
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (c.domain.faces[face].oscillation)
+      look(face_key(c.domain, face) + ".oscillation.phase", c.domain.faces[face].oscillation->phase,
+           [face](Case& other, double to) { other.domain.faces[face].oscillation->phase = to; });
+  return found;
+}
+
 Warnings friction_in_degrees(const Case& c) {
   Warnings found;
   const auto look = [&](const char* key, double value, const Setter& set) {
@@ -85,8 +150,11 @@ Warnings friction_in_degrees(const Case& c) {
 
 }  // namespace
 
+bool has_other_lengths(const Case& c) { return !lengths_in_millimetres(c).empty() || !box_in_millimetres(c).empty(); }
+
 std::vector<WarningRule> unit_rules() {
-  return {lengths_in_millimetres, densities_in_grams, liquid_in_grams, slope_in_degrees, friction_in_degrees};
+  return {lengths_in_millimetres, box_in_millimetres, gravity_in_centimetres, densities_in_grams,
+          liquid_in_grams,        slope_in_degrees,   friction_in_degrees,    angles_in_degrees};
 }
 
 }  // namespace thalweg::driver

@@ -14,4 +14,7 @@ inline constexpr double steepest_bed = 1.0;     // a tangent; no bed lies at 45 
 
 std::vector<WarningRule> unit_rules();
 
+// True if the grains or the cells are so large that all lengths are probably in millimetres.
+bool has_other_lengths(const Case& c);
+
 }  // namespace thalweg::driver

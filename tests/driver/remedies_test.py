@@ -182,6 +182,25 @@ VARIATIONS = [
     (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),  # tan(26 degrees)
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["fluid.density=1"], ["looks like one of 1 g/cm^3", "fluid.density: 1000"]),
+    (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which are 9.8", "gravity.magnitude: 9.8"]),
+    (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),
+    (
+        WATER,
+        [
+            "grains.0.orientation={axis: [0, 1, 0], angle: 90}", "grains.0.diameter=null", "grains.0.count=40",
+            "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 5.0e-3}, {position: [0.002, 0, 0], diameter: 5.0e-3}]}",
+        ],
+        ["14.3 turns, and looks like an angle in degrees", "grains.0.orientation.angle: 1.5708"],
+    ),
+    (
+        WATER, ["domain.boundaries.bottom=free_slip", "domain.boundaries.top=no_slip"],
+        ["look swapped", "consider domain.boundaries.bottom: no_slip and domain.boundaries.top: free_slip"],
+    ),
+    (
+        WATER,
+        [*CLEAR, "domain.size=[60, 20, 40]", "domain.spacing=0.5", "fluid.time_step=null"],
+        ["looks like millimetres", "domain.spacing: 0.5 mm is 0.0005 m"],
+    ),
     (WATER, ["gravity.slope=1.15"], ["looks like an angle in degrees", "gravity.slope: 0.0201"]),   # tan(1.15 degrees)
     (WATER, ["grains.0.count=70", "gravity.slope=0.3"], ["slides as a whole"]),   # 1.3 diameters of bed
     (
