@@ -21,26 +21,41 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr const char* examples = R"(Examples:
-  thalweg new bed.yaml --diameter 0.005 --shields 0.05 --depth 0.03   a case for an experiment
-  thalweg check cases/quickstart/case.yaml             what the case means and what it costs
-  thalweg run cases/quickstart/case.yaml --out run/a   run it on one core
-  thalweg run case.yaml --out run/a --resume           begin, or go on after any interruption
-  thalweg check case.yaml --ranks 1,16,64,256          how long it takes on so many ranks (docs/scaling.md)
-  mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5
-  mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60
-  thalweg info run/a                                   how far it has come
-  thalweg info --csv run/* > runs.csv                  the figures of many runs, one row each
-  thalweg stop run/a                                   save and end; --restart goes on
-  thalweg analyze run/a --from 4                       transport, surface and profiles of what it has stored
-  thalweg plot all run/a                               side view, transport rate and profiles (plot --help: more kinds)
-  thalweg report run/a                                 all about a run on one page
-  thalweg sweep slopes.yaml                            many runs of one case, into one table (docs/sweep.md)
-  thalweg defaults > all_keys.yaml                     the keys of a case, with default and meaning
-  thalweg defaults coupling.lubrication                one section of it
+struct Example {
+  const char *command, *meaning;  // after "thalweg" or "mpirun ... thalweg"
+};
+constexpr Example examples[] = {
+    {"thalweg new bed.yaml --diameter 0.005 --shields 0.05 --depth 0.03", "a case for an experiment"},
+    {"thalweg check cases/quickstart/case.yaml", "what the case means and what it costs"},
+    {"thalweg run cases/quickstart/case.yaml --out run/a", "run it on one core"},
+    {"thalweg run case.yaml --out run/a --resume", "begin, or go on after any interruption"},
+    {"thalweg check case.yaml --ranks 1,16,64,256", "how long it takes on so many ranks (docs/scaling.md)"},
+    {"mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5", ""},
+    {"mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60", ""},
+    {"thalweg info run/a", "how far it has come"},
+    {"thalweg info --csv run/* > runs.csv", "the figures of many runs, one row each"},
+    {"thalweg stop run/a", "save and end; --restart goes on"},
+    {"thalweg analyze run/a --from 4", "transport, surface and profiles of what it has stored"},
+    {"thalweg plot all run/a", "side view, transport rate and profiles (plot --help: more kinds)"},
+    {"thalweg report run/a", "all about a run on one page"},
+    {"thalweg sweep slopes.yaml", "many runs of one case, into one table (docs/sweep.md)"},
+    {"thalweg defaults > all_keys.yaml", "the keys of a case, with default and meaning"},
+    {"thalweg defaults coupling.lubrication", "one section of it"}};
 
-Exit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped cleanly by a signal or
---walltime (summary.json says which); 4 stopped cleanly by thalweg stop. After 3 and 4, --resume continues the run.)";
+constexpr const char* exit_codes =
+    "\nExit codes: 0 done; 1 the run failed; 2 the input cannot be run (nothing was written); 3 stopped cleanly by a "
+    "signal or\n--walltime (summary.json says which); 4 stopped cleanly by thalweg stop. After 3 and 4, --resume "
+    "continues the run.";
+
+// Examples of one command, or of all of them.
+std::string footer_of(const std::string& command) {
+  std::string text = "Examples:\n";
+  for (const Example& example : examples)
+    if (command.empty() || std::string(example.command).find("thalweg " + command + " ") != std::string::npos)
+      text += *example.meaning ? fmt::format("  {:<50}  {}\n", example.command, example.meaning)
+                               : fmt::format("  {}\n", example.command);
+  return command.empty() || command == "run" ? text + exit_codes : text.substr(0, text.size() - 1);
+}
 
 // CLI11's own validator says "not in range 0.000000 to 179769313486231570...".
 CLI::Validator positive_number() {
@@ -220,12 +235,13 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   Command command;
   Texts texts;
   app.set_version_flag("--version", "thalweg " + version_text());
-  app.footer(examples);
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   add_run(app, command, texts);
   add_new(app, command, texts);
   add_others(app, command);
+  app.footer(footer_of(""));
+  for (CLI::App* sub : app.get_subcommands({})) sub->footer(footer_of(sub->get_name()));
   try {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);

@@ -1,5 +1,6 @@
 #include "driver/estimate/drag_accuracy.hpp"
 
+#include "driver/case/solid_setup.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace thalweg::driver {
 
@@ -85,13 +87,12 @@ double stream_drag_error(double cells_per_diameter, double reynolds) {
   return ((1.0 - row.share) * at(row.low) + row.share * at(row.low + 1)) * std::pow(nearest / cells_per_diameter, 2);
 }
 
-std::string drag_text(const Case& c) {
-  if (!has_fluid(c) || c.grains.empty()) return {};
-  const double d = smallest_diameter(c), cells = d / c.domain.spacing;
-  const double falling = settling_velocity(c);
-  const double speed = falling > 0.0 ? falling : flow_estimate(c).speed;
-  const double reynolds = speed * d / c.fluid.kinematic_viscosity;
-  const std::string where = fmt::format("at {:.3g} cells and a Reynolds number of {:.4g}", cells, reynolds);
+namespace {
+
+// A body of this diameter (m) in a flow of this speed (m/s). whose: of these cells and this number, " of ...".
+std::string drag_of(const Case& c, double diameter, double speed, const char* what, const std::string& whose) {
+  const double cells = diameter / c.domain.spacing, reynolds = speed * diameter / c.fluid.kinematic_viscosity;
+  const std::string where = fmt::format("at {:.3g} cells and a Reynolds number of {:.4g}{}", cells, reynolds, whose);
   const bool eddies = c.fluid.subgrid().on(), thick = c.fluid.subgrid().viscosity_in_shear(1.0) > 0.0;
   if (reynolds < 10.0)
     return fmt::format("{}{}, {}", slow_text(c, cells),
@@ -99,13 +100,53 @@ std::string drag_text(const Case& c) {
   const bool tabled =
       c.fluid.subgrid().model() == lbm::SubgridModel::qr && lbm::traits_of(c.fluid.collision).is_trt_near_bodies;
   if (tabled && reynolds >= tabled_reynolds[0])
-    return fmt::format("of a grain alone in a stream about {:.0f} % too large {}",
+    return fmt::format("of {} alone in a stream about {:.0f} % too large {}", what,
                        100.0 * stream_drag_error(cells, reynolds), where);
   if (reynolds < 500.0)
     return fmt::format("{} in slow flow, {}; nothing is validated between 10 and {}", slow_text(c, cells), where,
                        tabled ? 300 : 500);
   if (!eddies) return fmt::format("not validated {} without a subgrid model, which was unstable at 2400", where);
   return fmt::format("too large {}; at 2400 a sphere alone fell {}", where, nearest_in_water(c.fluid, cells));
+}
+
+// The finest grains, free ones if there are any.
+std::string drag_on_grains(const Case& c) {
+  double finest = 0.0, falling = 0.0, coarsest = 0.0;
+  for (const std::size_t p : free_populations(c)) {
+    const beds::Population& grains = c.grains[p];
+    coarsest = std::max(coarsest, grains.largest_diameter());
+    if (finest > 0.0 && grains.smallest_diameter() >= finest) continue;
+    finest = grains.smallest_diameter();
+    falling = grains.held() ? 0.0
+                            : settling_velocity(finest, grains.density / c.fluid.density,
+                                                gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
+  }
+  const double speed = falling > 0.0 ? falling : flow_estimate(c).speed;
+  return drag_of(c, finest, speed, "a grain", finest < coarsest ? " of the finest grains" : "");
+}
+
+// The solid with the fewest cells across, as a sphere.
+std::string drag_on_solids(const Case& c) {
+  double width = std::numeric_limits<double>::infinity();
+  std::size_t thinnest = 0;
+  for (std::size_t n = 0; n < c.solids.size(); ++n) {
+    const bodies::Extent extent = extent_of(c.solids[n]);
+    const double least = (extent.upper - extent.lower).minCoeff();
+    if (least < width) thinnest = n;
+    width = std::min(width, least);
+  }
+  const double speed = flow_estimate(c).speed;
+  if (!(speed > 0.0)) return {};
+  return drag_of(c, width, speed, "a sphere",
+                 fmt::format(" of {}solids.{}", c.solids[thinnest].sphere ? "" : "a sphere as wide as ", thinnest));
+}
+
+}  // namespace
+
+std::string drag_text(const Case& c) {
+  if (!has_fluid(c)) return {};
+  if (!c.grains.empty()) return drag_on_grains(c);
+  return c.solids.empty() ? std::string() : drag_on_solids(c);
 }
 
 }  // namespace thalweg::driver

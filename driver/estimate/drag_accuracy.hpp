@@ -20,8 +20,8 @@ SlowDrag slow_drag_error(double cells_per_diameter, bool cli);
 // Reynolds numbers and with the square of the resolution beyond those of the cells. Positive: too large.
 double stream_drag_error(double cells_per_diameter, double reynolds);
 
-// Expected error of the drag, in words, for the smallest grains at their settling Reynolds number, or at that of the
-// flow if none settle. Empty without grains in a fluid.
+// Expected error of the drag, in words: on the finest free grains at their own settling Reynolds number, or at that of
+// the flow if they do not settle; in clear water on the thinnest solid, by a sphere as wide. Empty without either.
 std::string drag_text(const Case& c);
 
 }  // namespace thalweg::driver

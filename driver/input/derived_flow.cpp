@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace thalweg::driver {
 
@@ -68,31 +69,33 @@ void refuse_circles(const Case& c, const io::YamlDocument& document) {
   }
 }
 
-// The case as far as its grains and solids make a bed.
-Case bed_of(const io::YamlDocument& document, const std::vector<std::string>& overrides, const Question& question,
-            const KnownBeds& known, const Ranks& ranks) {
+// The document with a height of the box where there is none, so that it can be read.
+io::YamlDocument with_height(const io::YamlDocument& document, const std::vector<std::string>& overrides,
+                             const Ranks& ranks) {
   std::vector<std::string> provisional = overrides;
-  if (question.height) {
-    const std::vector<io::YamlNode>& size = size_of(document)->items;
+  if (const io::YamlNode* given = size_of(document); given && given->items.size() == 2) {
+    const std::vector<io::YamlNode>& size = given->items;
     const auto number = [&](const io::YamlNode& node) {
-      try {
-        return std::stod(node.text);
-      } catch (const std::exception&) {
-        throw document.error("domain.size", "expected numbers in m, for example [0.06, 0.0105]");
-      }
+      char* end = nullptr;
+      const double value = std::strtod(node.text.c_str(), &end);
+      if (end != node.text.c_str() && *end == '\0' && value > 0.0 && std::isfinite(value)) return value;
+      throw document.error("domain.size", "expected numbers in m above 0, for example [0.06, 0.0105]");
     };
     provisional.push_back(fmt::format("domain.size=[{}, {}, {:.9g}]", size[0].text, size[1].text,
                                       tall * (number(size[0]) + number(size[1]))));
   }
   io::YamlDocument tried(document.path(), provisional, ranks);
   lay_preset_beneath(tried);
-  Case c;
-  io::read_document(tried, c);
+  return tried;
+}
+
+// Completes what is read of the document as far as its grains and solids make a bed.
+void make_bed(Case& c, const io::YamlDocument& document, const Question& question, const KnownBeds& known,
+              const Ranks& ranks) {
   if (c.grains.empty()) throw document.error("flow", "there are no grains that could make a bed; remove the section");
-  if (question.height) refuse_circles(c, tried);
-  fill_in_grains(c, tried, known, ranks);
-  fill_in_surfaces(c, tried, ranks);
-  return c;
+  if (question.height) refuse_circles(c, document);
+  fill_in_grains(c, document, known, ranks);
+  fill_in_surfaces(c, document, ranks);
 }
 
 // m, of the water that has the Shields number on the slope of the case: H from R = H W/(n H + W).
@@ -121,8 +124,11 @@ double slope_of(const Case& c, double stress_height, double depth, const io::Yam
 DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
                          const KnownBeds& known, const Ranks& ranks) {
   if (!document.find("flow")) return {};
+  const io::YamlDocument tried = with_height(document, overrides, ranks);
+  Case c;
+  io::read_document(tried, c);  // refuses misspelt keys, before any is missed
   const Question question = question_of(document);
-  Case c = bed_of(document, overrides, question, known, ranks);
+  make_bed(c, tried, question, known, ranks);
   if (!drives_flow(c, 0))
     throw document.error("flow",
                          "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "

@@ -4,13 +4,11 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/grain_weight.hpp"
-#include "driver/estimate/reference_grain.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace thalweg::driver {
 
@@ -99,48 +97,6 @@ void warn_of_uphill_flow(const Case& c, Sentences& found) {
                       : fmt::format("gravity.vector: [{:g}, {:g}, {:g}]", -gravity.x(), gravity.y(), gravity.z())));
 }
 
-// Pa, on the bed, as far as it follows from the case; not a number where it does not.
-double stress_on_bed(const Case& c) {
-  const FlowNumbers numbers = flow_numbers(c);
-  if (!std::isfinite(numbers.depth)) return numbers.depth;
-  const FlowEstimate flow = flow_estimate(c);
-  const double of_drive =
-      flow.drive == FlowCause::none || flow.drive == FlowCause::slope ? 0.0 : flow.friction_velocity;
-  const double speed = std::isfinite(numbers.friction_velocity) ? numbers.friction_velocity : of_drive;
-  return speed > 0.0 ? c.fluid.density * speed * speed : std::numeric_limits<double>::quiet_NaN();
-}
-
-// One Shields number describes grains of one density. A population's own is that of its median size and its density.
-void warn_of_mixed_densities(const Case& c, Sentences& found) {
-  struct Own {
-    double shields;
-    std::string text;
-  };
-  const double stress = stress_on_bed(c), g = gravity_vector(c.gravity).norm();
-  std::vector<Own> numbers;
-  bool mixed = false;
-  const auto populations = free_populations(c);
-  for (const std::size_t p : populations) {
-    const beds::Population& grains = c.grains[p];
-    if (grains.held()) return;  // and so are all
-    mixed = mixed || grains.density != c.grains[populations.front()].density;
-    const double weight = (grains.density - c.fluid.density) * g * grains.diameter;
-    if (grains.density > (1.0 + neutral_density) * c.fluid.density)
-      numbers.push_back({stress / weight, fmt::format("{:.3g} for grains.{} ({:g} kg/m^3, {:.4g} m)", stress / weight,
-                                                      p, grains.density, grains.diameter)});
-  }
-  if (!mixed || numbers.empty() || !std::isfinite(stress)) return;
-  const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end(),
-                                                 [](const Own& a, const Own& b) { return a.shields < b.shields; });
-  const ReferenceGrain reference = reference_grain(c);
-  found.push_back(fmt::format(
-      "The grains have several densities, and the Shields number {:.3g} and q* are those of one reference grain of "
-      "{:.4g} kg/m^3, their mean, and {:.4g} m; of the populations by themselves it is {}{}: consider the number of "
-      "each population, or one density in all of grains.",
-      stress / ((reference.density - c.fluid.density) * g * reference.diameter), reference.density, reference.diameter,
-      least->text, least == most ? "" : " to " + most->text));
-}
-
 }  // namespace
 
 std::vector<std::string> drive_warnings(const Case& c) {
@@ -150,7 +106,6 @@ std::vector<std::string> drive_warnings(const Case& c) {
   if (!has_fluid(c)) return found;
   warn_of_closed_ends(c, found);
   warn_of_uphill_flow(c, found);
-  warn_of_mixed_densities(c, found);
   return found;
 }
 

@@ -1,5 +1,5 @@
-// Warnings of gravity that nothing holds, so that all it drives gets faster for ever, of gravity that drives nothing,
-// or the wrong way, and of a Shields number that describes grains of several densities.
+// Warnings of gravity that nothing holds, so that all it drives gets faster for ever, and of gravity that drives nothing,
+// or the wrong way.
 #pragma once
 
 #include "driver/case/case.hpp"

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace thalweg::driver {
 
@@ -102,6 +103,48 @@ std::string bed_text(const Case& c) {
                          : std::string());
 }
 
+// Pa, on the bed, as far as it follows from the case; not a number where it does not.
+double stress_on_bed(const Case& c) {
+  const FlowNumbers numbers = flow_numbers(c);
+  if (!std::isfinite(numbers.depth)) return numbers.depth;
+  const FlowEstimate flow = flow_estimate(c);
+  const double of_drive =
+      flow.drive == FlowCause::none || flow.drive == FlowCause::slope ? 0.0 : flow.friction_velocity;
+  const double speed = std::isfinite(numbers.friction_velocity) ? numbers.friction_velocity : of_drive;
+  return speed > 0.0 ? c.fluid.density * speed * speed : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Of several densities: the reference grain stands for all, and each population has a Shields number of its own, that
+// of its median size and its density.
+void add_densities(const Case& c, Lines& lines) {
+  struct Own {
+    double shields;
+    std::string text;
+  };
+  const double stress = stress_on_bed(c), g = gravity_vector(c.gravity).norm();
+  std::vector<Own> numbers;
+  bool mixed = false;
+  const auto populations = free_populations(c);
+  for (const std::size_t p : populations) {
+    const beds::Population& grains = c.grains[p];
+    if (grains.held()) return;  // and so are all
+    mixed = mixed || grains.density != c.grains[populations.front()].density;
+    const double weight = (grains.density - c.fluid.density) * g * grains.diameter;
+    if (grains.density > (1.0 + neutral_density) * c.fluid.density)
+      numbers.push_back({stress / weight, fmt::format("{:.3g} for grains.{} ({:g} kg/m^3, {:.4g} m)", stress / weight,
+                                                      p, grains.density, grains.diameter)});
+  }
+  if (!mixed || numbers.empty() || !std::isfinite(stress)) return;
+  const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end(),
+                                                 [](const Own& a, const Own& b) { return a.shields < b.shields; });
+  const ReferenceGrain reference = reference_grain(c);
+  lines.push_back(fmt::format(
+      "densities  several: Shields number {:.3g} and q* are those of the reference grain; of the populations by "
+      "themselves {}{}",
+      stress / ((reference.density - c.fluid.density) * g * reference.diameter), least->text,
+      least == most ? "" : " to " + most->text));
+}
+
 void add_stress_at_base(const Case& c, Lines& lines) {
   if (const double ratio = stress_ratio_at_base(c); ratio > 0.0)
     lines.push_back(fmt::format(
@@ -140,8 +183,8 @@ Lines bed_lines(const Case& c) {
         fmt::format("density    ratio {:.4g}; Galileo number {:.4g}", numbers.density_ratio, numbers.galileo));
     if (const double falling = settling_velocity(c); falling > 0.0)
       lines.push_back(fmt::format("fall       of a single grain through the fluid at rest: {:.3g} m/s", falling));
-    if (const std::string drag = drag_text(c); !drag.empty()) lines.push_back("drag       " + drag);
   }
+  if (const std::string drag = drag_text(c); !drag.empty()) lines.push_back("drag       " + drag);
   if (const std::string bed = bed_text(c); !bed.empty())
     lines.push_back(bed + (std::isfinite(numbers.depth)
                                ? fmt::format(", {:.3g} m of flow above, slope {:g}", numbers.depth, numbers.slope)
@@ -150,6 +193,7 @@ Lines bed_lines(const Case& c) {
     add_slope(numbers, lines);
   else if (std::isfinite(numbers.depth))
     add_other_drive(c, flow_estimate(c), lines);
+  if (has_fluid(c)) add_densities(c, lines);
   add_stress_at_base(c, lines);
   return lines;
 }

@@ -96,16 +96,21 @@ void SectionReader::fail(const YamlNode& node, const std::string& key, const std
       fmt::format("{}: {} = {}: {}{}", node.place, name, shown(node), remedy, remedy.ends_with('?') ? "" : "."));
 }
 
-// A missing key waits until finish(): most often it is there but misspelt, and the misspelling is the better complaint.
+// A missing key waits until the whole document is read: most often it is there but misspelt, and the misspelling is the
+// better complaint.
 const YamlNode* SectionReader::look_up(const std::string& key, bool required, const std::string& expectation) {
   known_.push_back(key);
   const YamlNode* node = section_.find(key);
-  if (!node && required && missing_.empty())
-    missing_ = fmt::format("{}: {} is missing: give {}.", section_.place, joined_key(key_path_, key), expectation);
+  if (!node && required)
+    note_missing(fmt::format("{}: {} is missing: give {}.", section_.place, joined_key(key_path_, key), expectation));
   return node;
 }
 
-void SectionReader::finish() const {
+void SectionReader::note_missing(const std::string& complaint) {
+  if (missing_.empty()) missing_ = complaint;
+}
+
+void SectionReader::refuse_unknown() const {
   for (const auto& [key, node] : section_.entries) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     if (node.kind == YamlNode::Kind::scalar && node.text.empty() &&
@@ -117,6 +122,10 @@ void SectionReader::finish() const {
          fmt::format("unknown key; {} {}", key_path_.empty() ? "a case has" : key_path_ + " has",
                      known_.empty() ? "no keys" : fmt::format("the keys {}", fmt::join(known_, ", "))));
   }
+}
+
+void SectionReader::finish() const {
+  refuse_unknown();
   if (!missing_.empty()) throw InputError(missing_);
 }
 
@@ -300,19 +309,22 @@ void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& 
 }
 
 void SectionReader::not_here(const std::string& key, const std::string& reason) {
-  if (const YamlNode* node = section_.find(key)) fail(*node, key, reason);
+  const YamlNode* node = section_.find(key);
+  if (!node) return;
+  if (missing_.empty()) fail(*node, key, reason);
+  known_.push_back(key);  // what is missing may be why
 }
 
 void SectionReader::require(bool condition, const std::string& key, const std::string& remedy) {
   if (condition || !missing_.empty()) return;
   if (const YamlNode* node = section_.find(key)) fail(*node, key, remedy);
-  throw InputError(fmt::format("{}: {}: {}.", section_.place, joined_key(key_path_, key), remedy));
+  note_missing(fmt::format("{}: {}: {}.", section_.place, joined_key(key_path_, key), remedy));
 }
 
 bool SectionReader::is_given(const std::string& key, bool) { return section_.find(key) != nullptr; }
 
 void SectionReader::read_inside(const YamlNode& node, const std::string& key, const SectionKey& about,
-                                const Body& body) const {
+                                const Body& body) {
   YamlNode inside = node;
   if (node.kind == YamlNode::Kind::scalar) {
     inside.kind = YamlNode::Kind::section;
@@ -328,7 +340,8 @@ void SectionReader::read_inside(const YamlNode& node, const std::string& key, co
   SectionReader reader(document_, joined_key(key_path_, key), inside);
   if (node.kind == YamlNode::Kind::scalar && !about.expected.empty()) reader.shorthand_ = about.shorthand;
   body(reader);
-  reader.finish();
+  reader.refuse_unknown();
+  note_missing(reader.missing_);
 }
 
 void SectionReader::nested(const std::string& key, bool given, const SectionKey& about, const Body& body) {

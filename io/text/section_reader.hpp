@@ -6,7 +6,7 @@
 
 namespace thalweg::io {
 
-// Throws InputError at the first thing wrong. finish() finds unknown keys.
+// Throws InputError at the first thing wrong; unknown keys before what is missing, which is most often misspelt.
 class SectionReader final : public SectionVisitor {
 public:
   // The section of `document` at key_path ("": the root), which must exist.
@@ -16,7 +16,7 @@ public:
   void require(bool condition, const std::string& key, const std::string& remedy) override;
   bool reading() const override { return true; }
 
-  void finish() const;  // throws InputError for an unknown key, with the nearest known one
+  void finish() const;  // throws InputError for an unknown key, with the nearest known one, then for a missing one
 
 private:
   void value_of(const std::string& key, double& value, const RealKey& about) override;
@@ -50,7 +50,9 @@ private:
                  const std::string& expectation) const;
   std::size_t word_from(const YamlNode& node, const std::string& key, const std::vector<Word>& words,
                         const SectionKey& about) const;
-  void read_inside(const YamlNode& node, const std::string& key, const SectionKey& about, const Body& body) const;
+  void read_inside(const YamlNode& node, const std::string& key, const SectionKey& about, const Body& body);
+  void note_missing(const std::string& complaint);
+  void refuse_unknown() const;
   [[noreturn]] void fail(const YamlNode& node, const std::string& key, const std::string& remedy) const;
 
   const YamlDocument& document_;
@@ -58,7 +60,7 @@ private:
   const YamlNode& section_;
   std::optional<std::string> shorthand_;  // the key that a plain value in place of the section stands for
   std::vector<std::string> known_;        // every key asked for, in order
-  std::string missing_;                   // the complaint about the first required key that is not given
+  std::string missing_;                   // the complaint about the first required key that is not given, here or below
 };
 
 // Reads a whole document into a struct described for SectionVisitor.

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace thalweg::driver::command_line_test {
 namespace {
 
@@ -66,6 +68,15 @@ TEST(CommandLine, HelpAndVersionEndWithZero) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_NE(help.text.find("mpirun -n 8 thalweg run"), std::string::npos);
   EXPECT_EQ(parse({"run", "--help"}).exit_code, 0);
+  for (const char* command : {"run", "new", "check", "defaults", "info", "stop"}) {  // each ends with its own examples
+    const std::string text = parse({command, "--help"}).text, own = std::string("thalweg ") + command + " ";
+    std::istringstream examples(text.substr(text.find("\nExamples:\n") + 11));
+    int count = 0;
+    for (std::string line; std::getline(examples, line) && line.starts_with("  "); ++count)
+      EXPECT_NE(line.find(own), std::string::npos) << line;
+    EXPECT_GT(count, 0) << text;
+    EXPECT_EQ(text.find("Exit codes:") != std::string::npos, own == "thalweg run ");
+  }
   EXPECT_FALSE(version.command);
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.text.rfind("thalweg ", 0), 0u);

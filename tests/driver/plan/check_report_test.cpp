@@ -2,8 +2,10 @@
 
 #include "driver/cost/disk_space.hpp"
 #include "driver/cost/run_cost.hpp"
+#include "driver/estimate/bed_flow.hpp"
 #include "driver/plan/case_warnings.hpp"
 #include "driver/plan/contact_warnings.hpp"
+#include "driver/plan/flow_report.hpp"
 #include "driver/plan/remedy.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
@@ -184,6 +186,29 @@ TEST(Remedy, IsASpacingThatDividesTheBox) {
   EXPECT_EQ(spacing_change(c, 2.00031e-3 / 6.0).value, "0.000333333333");
   c.domain.size = Vec3(0.061, 0.019, 0.041);
   EXPECT_EQ(spacing_change(c, 0.9e-3).value, "0.0005");
+}
+
+// A fact and no warning: nothing is wrong with a case of light and heavy grains.
+TEST(FlowReport, GivesTheShieldsNumberOfEveryDensity) {
+  Case c = wide_bed();
+  c.grains.push_back(c.grains.front());
+  EXPECT_FALSE(any_contains(bed_lines(c), "densities"));
+  c.grains[1].count = 500;
+  c.grains[1].density = 1500.0;
+  const double shields = flow_numbers(c).shields_hydraulic;
+  const std::string line = fmt::format(
+      "densities  several: Shields number {:.3g} and q* are those of the reference grain; of the populations by "
+      "themselves {:.3g} for grains.0 (2550 kg/m^3, 0.005 m) to {:.3g} for grains.1 (1500 kg/m^3, 0.005 m)",
+      shields, shields * 1200.0 / 1550.0, shields * 1200.0 / 500.0);
+  EXPECT_TRUE(any_contains(bed_lines(c), line)) << line;
+  EXPECT_FALSE(any_contains(warnings(c), "densit"));
+  c.grains[1].fixed = true;  // a rough floor is no sediment
+  EXPECT_FALSE(any_contains(bed_lines(c), "densities"));
+  c.grains[1].fixed = false;
+  c.gravity.slope = 0.0;  // no stress, no number
+  EXPECT_FALSE(any_contains(bed_lines(c), "densities"));
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.3, .response_time = 1.0};
+  EXPECT_TRUE(any_contains(bed_lines(c), "for grains.0"));
 }
 
 }  // namespace

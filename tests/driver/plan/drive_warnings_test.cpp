@@ -110,27 +110,5 @@ TEST(DriveWarnings, OfAFlowUphill) {
 
 // Two thirds glass and one third of 1500 kg/m^3, all of 5 mm: the mean density is 2200 kg/m^3, and at the same stress
 // the numbers are as 1/1550 to 1/1200 to 1/500.
-TEST(DriveWarnings, OfOneShieldsNumberForSeveralDensities) {
-  Case c = wide_bed();
-  c.grains.push_back(c.grains.front());
-  EXPECT_EQ(only_warning(c), "");
-  c.grains[1].count = 500;
-  c.grains[1].density = 1500.0;
-  const double shields = flow_numbers(c).shields_hydraulic;
-  EXPECT_TRUE(contains(only_warning(c), fmt::format("the Shields number {:.3g} and q* are those of one reference grain "
-                                                    "of 2200 kg/m^3, their mean, and 0.005 m; of the populations by "
-                                                    "themselves it is {:.3g} for grains.0 (2550 kg/m^3, 0.005 m) to "
-                                                    "{:.3g} for grains.1 (1500 kg/m^3, 0.005 m)",
-                                                    shields, shields * 1200.0 / 1550.0, shields * 1200.0 / 500.0)))
-      << only_warning(c);
-  c.grains[1].fixed = true;  // a rough floor is no sediment
-  EXPECT_EQ(only_warning(c), "");
-  c.grains[1].fixed = false;
-  c.gravity.slope = 0.0;  // no stress, no number
-  EXPECT_EQ(only_warning(c), "");
-  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.3, .response_time = 1.0};
-  EXPECT_TRUE(contains(only_warning(c), "for grains.0")) << only_warning(c);
-}
-
 }  // namespace
 }  // namespace thalweg::driver::drive_warnings_test
