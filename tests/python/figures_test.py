@@ -1,4 +1,5 @@
 """thalweg plot draws a run folder, and says in one sentence what is missing."""
+import csv
 import os
 import shutil
 import subprocess
@@ -64,6 +65,21 @@ class Figures(made_up.MadeUpFolder):
         self.assertLess(abs(float(shields) - exact), 5.1e-5)   # printed with four decimals
         self.assertLess(abs(float(bed) - 6.0), 5.1e-3)
         self.assertLess(abs(float(mean) - self.rate[100:].mean()), 5.1e-5)   # from 1 s on, as the case says
+
+    def test_the_relation_of_a_single_measurement(self):
+        """Which has no error: none is drawn, and neither nan nor a warning is printed."""
+        self.write_profiles()
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0.01\n1.5,0.05\n")
+        out, table = self.folder / "relation.png", self.folder / "runs.csv"
+        for _ in range(2):   # the second time the row is read from the table
+            done = self.plot("relation", "--out", out, "--table", table)
+            self.drawn(done, out)
+            self.assertNotIn("nan", done.stdout)
+            self.assertNotIn("Warning", done.stderr)
+        self.assertIn("| 0.0500 | single measurement | 0.0000 |", done.stdout)
+        with open(table, newline="") as file:
+            row, = csv.DictReader(file)
+        self.assertEqual((row["q_star [1]"], row["error [1]"]), ("0.0500", ""))
 
     def test_what_a_camera_sees(self):
         out = self.folder / "visible.png"

@@ -65,19 +65,29 @@ def draw_paper(axes):
                       label=f"Zhang et al., flume, start: {start}")
 
 
+def number_text(value, form=".4f", absent=""):
+    """absent: for the error of a single measurement, which is not a number."""
+    return f"{value:{form}}" if np.isfinite(value) else absent
+
+
 def row_of(folder, shields, rate, steady, height):
     return {
         "run": folder.name, "Shields number [1]": f"{shields:.4f}", "bed [d]": f"{height:.2f}",
-        "q_star [1]": f"{rate.mean:.4f}", "error [1]": f"{rate.error:.4f}", "deviation [1]": f"{rate.deviation:.4f}",
+        "q_star [1]": f"{rate.mean:.4f}", "error [1]": number_text(rate.error), "deviation [1]": f"{rate.deviation:.4f}",
         "steady": VERDICTS[steady],
     }
 
 
+def error_in(row):
+    """None: q* is a single measurement."""
+    return float(row["error [1]"]) if row["error [1]"] else None
+
+
 def draw_runs(axes, rows):
     for n, row in enumerate(rows):
-        shields, rate, error = (float(row[name]) for name in ("Shields number [1]", "q_star [1]", "error [1]"))
+        shields, rate = float(row["Shields number [1]"]), float(row["q_star [1]"])
         axes.errorbar(
-            shields, max(rate, SMALLEST), error, fmt="osD^v"[n // 10 % 5], color=f"C{n % 10}", ms=7, capsize=3,
+            shields, max(rate, SMALLEST), error_in(row), fmt="osD^v"[n // 10 % 5], color=f"C{n % 10}", ms=7, capsize=3,
             mfc=f"C{n % 10}" if row["steady"] == "yes" else "none", label=row["run"],
         )
 
@@ -87,7 +97,8 @@ def print_table(folders, found):
     print("|---|---|---|---|---|---|---|---|")
     for folder, (shields, rate, steady, height) in zip(folders, found):
         print(
-            f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} | {rate.error:.4f} |"
+            f"| {folder.name} | {shields:.4f} | {height:.2f} | {rate.mean:.4f} |"
+            f" {number_text(rate.error, absent='single measurement')} |"
             f" {rate.deviation:.4f} | {rate.independent:.0f} | {VERDICTS[steady]} |"
         )
 
@@ -105,8 +116,7 @@ def figure_of(rows):
     draw_paper(axes)
     draw_runs(axes, rows)
     shields = [float(row["Shields number [1]"]) for row in rows]
-    tops = [float(row["q_star [1]"]) + float(row["error [1]"]) for row in rows]
-    tops = [top for top in tops if np.isfinite(top)]
+    tops = [float(row["q_star [1]"]) + (error_in(row) or 0.0) for row in rows]
     axes.set(xlabel="Shields number", ylabel=r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$",
              xlim=(min([0.015] + [0.9 * value for value in shields]), max([0.15] + [1.1 * value for value in shields])),
              ylim=(SMALLEST, max([1.0] + [1.3 * top for top in tops])))

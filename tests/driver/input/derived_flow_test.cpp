@@ -100,6 +100,7 @@ TEST(DerivedFlow, RefusesMoreOrLessThanOneFlow) {
   };
   refused({"flow.depth=null"}, "the height is missing");
   refused({"gravity.slope=0.1"}, "it follows from flow.shields_number and flow.depth");
+  refused({"domain.size=[0.0594, -1e-300]"}, "expected numbers in m above 0");
   refused({"domain.size=[0.0594, 0.010725, 0.0825]"}, "the box has a height already");
   refused({"domain.size=[0.0594, 0.010725, 0.0825]", "flow.depth=null", "gravity.slope=0.1"},
           "it follows from flow.shields_number; remove one of the two");
