@@ -16,6 +16,7 @@
 #include "driver/input/case_reader.hpp"
 #include "driver/plan/check_report.hpp"
 #include "driver/plan/solve.hpp"
+#include "loop/stop_request.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -86,6 +87,7 @@ void announce(ExitCode code) {
 }
 
 int run(const Command& command, int argc, char** argv, loop::WallClock::time_point started) {
+  loop::end_on_stop_signals(interrupted, first_of_its_launcher());
   MpiSession session(argc, argv);
   const bool prints = rank_of(MPI_COMM_WORLD) == 0;
   FailureBarrier failures(MPI_COMM_WORLD);

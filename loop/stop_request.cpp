@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <string_view>
+#include <thread>
 
 namespace thalweg::loop {
 
@@ -11,19 +16,23 @@ namespace {
 
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t continued = 0;
+volatile std::sig_atomic_t code_at_the_end = 0;
+volatile std::sig_atomic_t says_the_end = 0;
 
+extern "C" void end_at_once(int) {
+  constexpr std::string_view sentence =
+      "thalweg: stopped by a signal before the run began: nothing was written, and the same command starts it.\n";
+  ssize_t written = 0;
+  if (says_the_end != 0) written = write(STDERR_FILENO, sentence.data(), sentence.size());
+  static_cast<void>(written);
+  _exit(code_at_the_end);
+}
 extern "C" void note_signal(int signal) { received = signal; }
 extern "C" void note_continuation(int) { continued = 1; }
 
-constexpr double default_sigkill_timeout = 1.0;    // s, Open MPI 4
-constexpr double sigkill_timeout_of_prrte = 0.25;  // s, Open MPI 5.0, which takes no other value
-
-}  // namespace
-
-void listen_for_stop_signals() {
-  received = 0;
+void handle_stop_signals(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = note_signal;
+  action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;  // file writes and MPI's own calls go on undisturbed
   for (int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2}) sigaction(signal, &action, nullptr);
@@ -36,6 +45,25 @@ void listen_for_stop_signals() {
   continued = 0;
   action.sa_handler = note_continuation;
   if (sigcont_to_sigterm_delay() > 0.0) sigaction(SIGCONT, &action, nullptr);
+}
+
+constexpr double default_sigkill_timeout = 1.0;    // s, Open MPI 4
+constexpr double sigkill_timeout_of_prrte = 0.25;  // s, Open MPI 5.0, which takes no other value
+
+}  // namespace
+
+void end_on_stop_signals(int exit_code, bool says_so) {
+  code_at_the_end = exit_code;
+  says_the_end = says_so ? 1 : 0;
+  handle_stop_signals(end_at_once);
+}
+
+void listen_for_stop_signals() {
+  constexpr double longest_delay = 0.5;  // s, of a signal
+  if (consume_sigcont())                 // and SIGTERM will follow, or the run was suspended
+    std::this_thread::sleep_for(std::chrono::duration<double>(sigcont_to_sigterm_delay() + longest_delay));
+  received = 0;
+  handle_stop_signals(note_signal);
 }
 
 int received_stop_signal() { return received; }

@@ -7,8 +7,13 @@
 
 namespace thalweg::loop {
 
-// Makes these signals set a flag from now on, and clears it. Under Open MPI's mpirun SIGCONT sets a flag too. SIGPIPE
-// is ignored: losing the reader of our output must not end the run.
+// Makes these signals end the process at once with this exit code from now on, until listen_for_stop_signals(): a run
+// that has written nothing has nothing to save, and preparing it may take longer than the time before it is killed.
+// says_so: with a sentence on standard error. SIGPIPE is ignored: losing the reader of our output must not end the run.
+void end_on_stop_signals(int exit_code, bool says_so);
+
+// Makes these signals set a flag from now on, and clears it. Under Open MPI's mpirun SIGCONT sets a flag too; where it
+// has come since end_on_stop_signals(), waits first for the SIGTERM that follows.
 void listen_for_stop_signals();
 
 // Number of the last stop signal that this process has received since then; 0: none.

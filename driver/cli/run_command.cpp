@@ -323,7 +323,6 @@ private:
 
 Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_point started, FailureBarrier& failures,
                  loop::Log& log) {
-  loop::listen_for_stop_signals();
   std::optional<io::FolderLock> lock;
   if (command.resume)
     if (const std::optional<Outcome> outcome = resume(command, lock, communicator, log)) return *outcome;
@@ -338,6 +337,8 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     paths.folder.check_writable();
   });
   CaseRun run(command, paths, c, communicator);
+  loop::listen_for_stop_signals();
+  MPI_Barrier(communicator);  // a rank that was ended instead keeps the others from beginning
   run.begin(lock, log);
   return run.advance(started, failures, log);
 }

@@ -12,7 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 import program
-from program import TUMBLING_GRAINS, ProgramTest
+from program import TUMBLING_GRAINS, ProgramTest, files_below
 
 # Grains that never come to rest: no gravity, no loss in contacts along the normal, no friction.
 PERPETUAL = TUMBLING_GRAINS.replace("slope: 0.5", "slope: 0").replace("magnitude: 9.8", "magnitude: 0") \
@@ -22,6 +22,9 @@ PERPETUAL = TUMBLING_GRAINS.replace("slope: 0.5", "slope: 0").replace("magnitude
              " velocity: [-0.2, 0.1, 0.1]}") \
     .replace("{from: 0.05}", "{from: 0}").replace("every: 0.04", "every: 100").replace("every: 0.02", "every: 20") \
     .replace("every: 2.0e-3", "every: 0.1")
+
+# Grains that take many seconds to be placed.
+DENSE = "grains=[{count: 400000, diameter: 3.0e-4, density: 2550, placement: {pattern: dense}}]"
 
 
 class Stopping(ProgramTest):
@@ -111,6 +114,32 @@ class Stopping(ProgramTest):
             self.assertIn("resuming from", self.run_well("run", self.case, "--restart", "run", "--until", "1").stdout)
         else:
             self.assert_refused("run", self.case, "--restart", "run", words=["has no checkpoint"])
+
+    def stopped_before_it_begins(self, ranks, signalled):
+        """A run that takes long to place its grains, stopped as soon as its processes are there."""
+        command = self.command(("run", self.case, "--set", DENSE, "--set", "run.time_step=null"), ranks)
+        process = subprocess.Popen(
+            command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env=os.environ | {"OMPI_MCA_odls_base_sigkill_timeout": "1"},
+        )
+        self.addCleanup(process.kill)
+        for _ in range(600):
+            if len(self.processes()) == max(1, ranks):
+                break
+            time.sleep(0.05)
+        time.sleep(1.0)   # for its libraries to be loaded, and MPI to be started
+        process.send_signal(signalled)
+        said, complaint = process.communicate(timeout=40)
+        self.assertEqual(files_below(self.folder), ["case.yaml"], said + complaint)
+        self.assertEqual(complaint.count("stopped by a signal before the run began: nothing was written"), 1, complaint)
+        return process.returncode
+
+    def test_a_signal_before_the_run_begins(self):
+        for signalled in (signal.SIGTERM, signal.SIGINT):
+            self.assertEqual(self.stopped_before_it_begins(0, signalled), 3)
+
+    def test_ctrl_c_of_mpirun_before_the_run_begins(self):
+        self.assertNotEqual(self.stopped_before_it_begins(2, signal.SIGINT), 0)   # the code is that of mpirun
 
     def stop_by_command(self, ranks):
         process = self.start(ranks=ranks)
