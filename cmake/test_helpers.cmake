@@ -77,6 +77,24 @@ function(thalweg_long_test)
   set_tests_properties(${T_NAME} PROPERTIES LABELS validation TIMEOUT 1800)
 endfunction()
 
+# thalweg_extended_copy(module [DEPENDS file...]): the library thalweg_MODULE_extended, a copy of the module in which extend.py of this
+# folder has made the changes that a user may make; EXTENDED_COPY is set to its include directory.
+function(thalweg_extended_copy module)
+  cmake_parse_arguments(T "" "" "DEPENDS" ${ARGN})
+  get_target_property(copies thalweg_${module} SOURCES)
+  file(GLOB_RECURSE originals CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${module}/*.hpp ${PROJECT_SOURCE_DIR}/${module}/*.cpp)
+  set(copy ${CMAKE_CURRENT_BINARY_DIR}/copy)
+  list(TRANSFORM copies PREPEND ${copy}/${module}/)
+  add_custom_command(OUTPUT ${copies}
+                     COMMAND ${THALWEG_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/extend.py ${PROJECT_SOURCE_DIR} ${copy}
+                     DEPENDS extend.py ${PROJECT_SOURCE_DIR}/tests/support/extended_copy.py ${T_DEPENDS} ${originals})
+  set(library thalweg_${module}_extended)
+  add_library(${library} STATIC ${copies})
+  target_include_directories(${library} BEFORE PUBLIC ${copy})
+  target_link_libraries(${library} PUBLIC thalweg::core PRIVATE thalweg_own_options)
+  set(EXTENDED_COPY ${copy} PARENT_SCOPE)
+endfunction()
+
 # Environment under which Open MPI 4 and 5 run more ranks than cores, as root in a container, and give up their time slice.
 # All ranks of a test are on one machine: without a search for faster networks (pml ob1) each run begins 0.2 s sooner.
 # (Without a daemon, ess_singleton_isolated, a run without mpirun would begin another 0.2 s sooner, but all such runs then have the

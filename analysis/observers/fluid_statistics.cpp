@@ -6,8 +6,6 @@
 #include "core/sums/fixed_point.hpp"
 #include "core/sums/wide_sums_over_ranks.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace thalweg::analysis {
@@ -135,14 +133,6 @@ bool FluidStatistics::load_sums(ArchiveReader& archive, const std::string& group
 void describe(SectionVisitor& visit, FluidStatisticsKeys& keys) {
   describe_from(visit, keys.from);
   describe_every(visit, keys.every);
-}
-
-std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunContext& run) {
-  if (keys.from < run.until) return std::nullopt;
-  return fmt::format(
-      "The means of the fluid begin at {} s, after the end of the run at {} s, so profiles.h5 will hold "
-      "none: consider analysis.fluid_statistics.from: {:.2g}.",
-      keys.from, run.until, 0.5 * run.until);
 }
 
 std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunContext& run,

@@ -32,7 +32,6 @@ struct FluidStatisticsKeys {
   bool operator==(const FluidStatisticsKeys&) const = default;
 };
 void describe(SectionVisitor& visit, FluidStatisticsKeys& keys);
-std::optional<std::string> warning(const FluidStatisticsKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 

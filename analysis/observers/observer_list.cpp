@@ -2,7 +2,21 @@
 
 #include "analysis/observers/grain_energy.hpp"
 
+#include <fmt/format.h>
+
 namespace thalweg::analysis {
+
+namespace {
+
+// from, until: s.
+std::string begins_too_late(const char* section, double from, double until) {
+  return fmt::format(
+      "The measurement analysis.{0} begins at {1} s, after the end of the run at {2} s, and gives nothing: consider "
+      "analysis.{0}.from: {3:.2g}.",
+      section, from, until, 0.5 * until);
+}
+
+}  // namespace
 
 void check(const RequestedObservers& requested, const RunContext& run) {
   requested.for_each([&](const auto& keys) {
@@ -21,6 +35,9 @@ void check(const RequestedObservers& requested, const RunContext& run) {
 std::vector<std::string> warnings(const RequestedObservers& requested, const RunContext& run) {
   std::vector<std::string> found;
   requested.for_each([&](const auto& keys) {
+    using Keys = std::decay_t<decltype(*keys)>;
+    if constexpr (requires { keys->from; })
+      if (keys && keys->from >= run.until) found.push_back(begins_too_late(Keys::section, keys->from, run.until));
     if constexpr (requires { warning(*keys, run); }) {
       const std::optional<std::string> sentence = keys ? warning(*keys, run) : std::nullopt;
       if (sentence) found.push_back(*sentence);

@@ -53,7 +53,7 @@ private:
 // Throws KeyError, with the key from `analysis` on, where one asks for what the run does not have.
 void check(const RequestedObservers& requested, const RunContext& run);
 
-// The warnings of all requested observers, whole sentences.
+// The warnings of all requested observers, whole sentences; also of what begins (key from) after the end of the run.
 std::vector<std::string> warnings(const RequestedObservers& requested, const RunContext& run);
 
 // The requested ones, as far as the run has what they look at, and those that every run has.

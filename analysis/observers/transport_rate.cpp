@@ -213,14 +213,6 @@ void describe(SectionVisitor& visit, TransportRateKeys& keys) {
 
 void check(const TransportRateKeys&, const RunContext& run) { require_grains(run, "measure"); }
 
-std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run) {
-  if (keys.from < run.until) return std::nullopt;
-  return fmt::format(
-      "The mean transport rate begins at {} s, after the end of the run at {} s, so the summary will have "
-      "none: consider analysis.transport_rate.from: {:.2g}.",
-      keys.from, run.until, 0.5 * run.until);
-}
-
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);

@@ -39,7 +39,6 @@ struct TransportRateKeys {
 };
 void describe(SectionVisitor& visit, TransportRateKeys& keys);
 void check(const TransportRateKeys& keys, const RunContext& run);
-std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 

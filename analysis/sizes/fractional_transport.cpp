@@ -335,18 +335,12 @@ void check(const FractionalTransportKeys& keys, const RunContext& run) {
                                keys.edges.front(), keys.edges.back(), grains.smallest_free, grains.largest_free));
 }
 
-std::optional<std::string> warning(const FractionalTransportKeys& keys, const RunContext& run) {
-  if (run.grains->smallest_free == run.grains->largest_free)
-    return fmt::format(
-        "All free grains have one size, {:g} m, so that analysis.fractional_transport has one class: consider "
-        "analysis.transport_rate alone.",
-        run.grains->largest_free);
-  if (keys.from < run.until) return std::nullopt;
+std::optional<std::string> warning(const FractionalTransportKeys&, const RunContext& run) {
+  if (run.grains->smallest_free != run.grains->largest_free) return std::nullopt;
   return fmt::format(
-      "The means by size class begin at {} s, after the end of the run at {} s, so the summary will have none: "
-      "consider "
-      "analysis.fractional_transport.from: {:.2g}.",
-      keys.from, run.until, 0.5 * run.until);
+      "All free grains have one size, {:g} m, so that analysis.fractional_transport has one class: consider "
+      "analysis.transport_rate alone.",
+      run.grains->largest_free);
 }
 
 std::unique_ptr<Observer> make_observer(const FractionalTransportKeys& keys, const RunContext& run,

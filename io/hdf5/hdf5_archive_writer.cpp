@@ -148,7 +148,9 @@ void Hdf5Writer::attribute(const std::string& path, std::int64_t value) {
 void Hdf5Writer::attribute(const std::string& path, const std::string& value) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   const std::string text = as_utf8(value);
-  H5Tset_size(type, text.size() + 1);  // a fixed length, with the closing zero: variable lengths live in a heap
+  // A fixed length, with the closing zero: variable lengths live in a heap without checksums, and nc_get_att_text()
+  // refuses them, by which netCDF tools in C and Fortran read units.
+  H5Tset_size(type, text.size() + 1);
   H5Tset_cset(type, H5T_CSET_UTF8);
   file_->attribute(path, type, type, text.c_str());
 }

@@ -153,8 +153,12 @@ VARIATIONS = [
     (WATER, ["domain.spacing=1.0e-3", "coupling.fewest_cells_per_diameter=1"], []),
     (WATER, ["domain.size=[0.061, 0.021, 0.041]", "domain.spacing=1.0e-3"], ["5 cells across"]),
     (
-        WATER, ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}}"],
-        ["mean transport rate", "means of the fluid"],
+        WATER,
+        ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}, bed_surface: {from: 31}}"],
+        [
+            "The measurement analysis.transport_rate begins at 40 s, after the end of the run at 30 s, and gives nothing",
+            "analysis.fluid_statistics begins at 30 s", "analysis.bed_surface begins at 31 s",
+        ],
     ), (WATER, ["grains.0.density=300"], ["no heavier"]),
     (
         WATER, ["coupling={grain_steps_per_fluid_step: 1}", "contact.normal_stiffness=20000"],
@@ -218,7 +222,7 @@ VARIATIONS = [
 ]
 
 # Warnings whose remedy is for the user to choose: what drives the flow, and what is measured when.
-BY_HAND = ("Gravity drives", "The box is periodic", "Walls close", "The mean")
+BY_HAND = ("Gravity drives", "The box is periodic", "Walls close", "The measurement")
 
 KEY = r"(?<![\w.])((?:[a-z_]+\.)+[a-z0-9_.]*[a-z0-9_]): (\{[^}]*\}|\[[^\]]*\]|[^\s,]+)"
 

@@ -1,5 +1,6 @@
 #include "analysis/sizes/fractional_transport.hpp"
 
+#include "analysis/observers/observer_list.hpp"
 #include "analysis/observers/transport_rate.hpp"
 #include "tests/analysis/made_up_grains.hpp"
 #include "tests/support/memory_archive.hpp"
@@ -207,7 +208,13 @@ TEST(FractionalTransportKeys, HaveClassesThatCoverTheGrains) {
   EXPECT_THROW(check(keys, endless), KeyError);
   EXPECT_FALSE(warning(keys, run_of(2e-3, 8e-3)));
   EXPECT_TRUE(warning(keys, run_of(8e-3, 8e-3))) << "a single size";
-  EXPECT_TRUE(warning(FractionalTransportKeys{.from = 10.0}, run_of(2e-3, 8e-3)));
+  RequestedObservers requested;
+  requested.of<FractionalTransportKeys>() = FractionalTransportKeys{.from = 0.5};
+  RunContext run = run_of(2e-3, 8e-3);
+  run.until = 1.0;
+  EXPECT_TRUE(warnings(requested, run).empty());
+  run.until = 0.5;
+  EXPECT_EQ(warnings(requested, run).size(), 1U) << "it begins when the run ends";
 }
 
 }  // namespace
