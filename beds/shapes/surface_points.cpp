@@ -1,0 +1,48 @@
+#include "beds/shapes/surface_points.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::beds {
+
+std::vector<SurfacePoint> points_of(const TriangleMesh& mesh, double size) {
+  std::vector<SurfacePoint> points;
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.points[static_cast<std::size_t>(t[0])];
+    const Vec3 u = mesh.points[static_cast<std::size_t>(t[1])] - a, v = mesh.points[static_cast<std::size_t>(t[2])] - a;
+    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+    const int parts = std::max(1, static_cast<int>(std::ceil(longest / size)));
+    const double area = 0.5 * u.cross(v).norm() / (parts * parts);
+    // Parallel lines cut it in parts^2 triangles: those that stand as it does, and those turned over between them.
+    for (int i = 0; i < parts; ++i)
+      for (int j = 0; i + j < parts; ++j) {
+        points.push_back({a + ((i + 1.0 / 3.0) * u + (j + 1.0 / 3.0) * v) / parts, area});
+        if (i + j + 1 < parts) points.push_back({a + ((i + 2.0 / 3.0) * u + (j + 2.0 / 3.0) * v) / parts, area});
+      }
+  }
+  return points;
+}
+
+std::vector<SurfacePoint> points_of(std::span<const dem::PlacedSphere> spheres, std::vector<std::size_t>* sphere) {
+  constexpr int on_sphere = 2000;
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<SurfacePoint> points;
+  for (std::size_t n = 0; n < spheres.size(); ++n)
+    for (int k = 0; k < on_sphere; ++k) {
+      const double z = 1.0 - (2.0 * k + 1.0) / on_sphere, flat = std::sqrt(1.0 - z * z), angle = golden_angle * k;
+      const double radius = spheres[n].radius;
+      const Vec3 point = spheres[n].position + radius * Vec3(flat * std::cos(angle), flat * std::sin(angle), z);
+      const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const dem::PlacedSphere& other) {
+        return &other != &spheres[n] && (point - other.position).squaredNorm() < other.radius * other.radius;
+      });
+      if (held) continue;
+      points.push_back({point, 4.0 * std::numbers::pi * radius * radius / on_sphere});
+      if (sphere) sphere->push_back(n);
+    }
+  return points;
+}
+
+}  // namespace thalweg::beds
