@@ -40,7 +40,7 @@ ROOMS = {
     "lbm": ("lattice", "collision", "walls", "fluid"),
     "bodies": ("map", "links"),
     "dem": ("laws", "motion", "clumps", "contact", "ranks"),
-    "beds": ("packing", "sizes", "population", "files"),
+    "beds": ("packing", "sizes", "shapes", "population", "files"),
     "model_fluid": (),
     "coupling": ("loads", "keys", "system"),
     "continuum": (),
