@@ -1,5 +1,5 @@
-// Warnings of gravity that nothing holds, so that all it drives gets faster for ever, and of gravity that drives nothing,
-// or the wrong way.
+// Warnings of gravity that nothing holds, so that all it drives gets faster for ever, and of gravity that drives
+// nothing, or the wrong way.
 #pragma once
 
 #include "driver/case/case.hpp"
