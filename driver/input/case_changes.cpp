@@ -46,7 +46,12 @@ constexpr std::string_view separator = ": ";
 
 Values values_of(const std::string& yaml) {
   Values values;
-  add_values(YAML::Load(yaml), "", values);
+  try {
+    add_values(YAML::Load(yaml), "", values);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format(
+        "The case.yaml kept in the run folder cannot be read ({}): restore it, or begin a new run.", error.what()));
+  }
   std::erase_if(values, [](const auto& value) {
     return value.first.starts_with("initial.") || value.first.find(".placement") != std::string::npos;
   });

@@ -105,5 +105,11 @@ TEST(CaseChanges, AWallIsWhereItsMotionSinceTheStartHasBroughtIt) {
   EXPECT_NO_THROW(refuse_changes_of_state(top, false));  // of a fluid, in its own plane
 }
 
+// As a disk error or an editor may leave it.
+TEST(CaseChanges, OfACaseThatIsDamagedAreRefused) {
+  EXPECT_THROW(case_changes("run: {until: 1", "run: {until: 1}"), InputError);
+  EXPECT_TRUE(case_changes("run: {until: 1}", "run: {until: 1}").empty());
+}
+
 }  // namespace
 }  // namespace thalweg::driver::case_changes_test
