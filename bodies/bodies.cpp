@@ -159,7 +159,7 @@ void Bodies<Real>::settle() {
 template <typename Real>
 void Bodies<Real>::refill() {
   CHECK(settled_);
-  const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, bodies_);
+  const RefillTotals totals = refill_.fill(fluid_, map_.changes(), rest_, surrounding_, bodies_);
   totals_.refilled_mass = totals.mass;
   totals_.refilled = totals.momentum;
   totals_.refilled_angular_momentum = totals.angular_momentum;
@@ -263,8 +263,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
 template <typename Real>
 void Bodies<Real>::add_link_totals() {
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
-    if (map_.bodies()[slot].is_free()) continue;
-    const LinkBody& body = bodies_[slot];
+    const LinkBody& body = bodies_[slot];  // one that has just been removed has refilled its cells
     const Vec3 force = body.force.to_vec3();
     totals_.link_momentum += force;
     totals_.link_angular_momentum += body.centre.cross(force) + body.torque.to_vec3();

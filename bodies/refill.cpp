@@ -136,12 +136,15 @@ void Refill::exchange(std::vector<Uncovered>& uncovered) const {
     for (std::size_t k = 0; k < cells.size(); ++k) uncovered[cells[k]].neighbours.add(incoming[from][k]);
 }
 
-std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_rest, const Vec3& velocity,
-                                              const Vec3& force) {
-  const double excess = n.count > 0 ? LatticeFixed::to_double(n.excess) / static_cast<double>(n.count) : 0.0;
+double Refill::excess_of(const Neighbours& n, double surrounding) {
+  return n.count > 0 ? LatticeFixed::to_double(n.excess) / static_cast<double>(n.count) : surrounding;
+}
+
+// deviation: rho - 1.
+std::array<double, 19> Refill::populations_of(double deviation, const Vec3& velocity, const Vec3& force) {
   std::array<double, 19> f;
   for (int i = 0; i < D3Q19::directions; ++i) {
-    f[i] = lbm::equilibrium_deviation(i, at_rest + excess, velocity);
+    f[i] = lbm::equilibrium_deviation(i, deviation, velocity);
     f[i] += 1.5 * D3Q19::weight(i) * velocity_of(i).dot(force);
   }
   return f;
@@ -149,7 +152,7 @@ std::array<double, 19> Refill::populations_of(const Neighbours& n, double at_res
 
 template <typename Real>
 RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
-                          std::vector<LinkBody>& bodies) {
+                          std::span<const double> surrounding, std::vector<LinkBody>& bodies) {
   RefillTotals totals;
   std::vector<Uncovered> uncovered = uncovered_cells(changes);
   if (uncovered.empty()) return totals;
@@ -164,7 +167,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
     const Vec3 position = centre_of(cell.global);
     const Vec3 velocity = body.velocity + body.angular_velocity.cross(box_.difference(position, body.centre));
     const double at_rest = rest.deviation(position);
-    const std::array<double, 19> values = populations_of(cell.neighbours, at_rest, velocity, force);
+    const double excess = excess_of(cell.neighbours, surrounding[static_cast<std::size_t>(cell.before)]);
+    const std::array<double, 19> values = populations_of(at_rest + excess, velocity, force);
     const std::ptrdiff_t at = index_of(fluid.indexing(), cell.global);
     Vec3 momentum = Vec3::Zero();
     for (int i = 0; i < D3Q19::directions; ++i) {
@@ -183,8 +187,8 @@ RefillTotals Refill::fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>
 }
 
 template RefillTotals Refill::fill(lbm::Fluid<float>&, const std::vector<CellChange>&, const Hydrostatic&,
-                                   std::vector<LinkBody>&);
+                                   std::span<const double>, std::vector<LinkBody>&);
 template RefillTotals Refill::fill(lbm::Fluid<double>&, const std::vector<CellChange>&, const Hydrostatic&,
-                                   std::vector<LinkBody>&);
+                                   std::span<const double>, std::vector<LinkBody>&);
 
 }  // namespace thalweg::bodies

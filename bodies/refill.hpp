@@ -1,6 +1,6 @@
 // Gives cells that a body has just uncovered their populations. With rho_n the density at rest plus the mean excess
-// over it of the neighbours that were fluid before (none: 0), u_w the velocity of the body's rigid motion at the cell,
-// F the body force:
+// over it of the neighbours that were fluid before (none: that of the fluid around the body), u_w the velocity of the
+// body's rigid motion at the cell, F the body force:
 //   f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 // These are post-collision populations, whose momentum is rho u + F/2. Lattice units.
 //
@@ -18,6 +18,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace thalweg::bodies {
@@ -33,12 +34,13 @@ class Refill {
 public:
   Refill(const Decomposition& decomposition, MPI_Comm communicator);
 
-  // changes: from BodyMap::settle(); bodies: centre and motion of the slots, to whose mass rho - rho_rest of the
+  // changes: from BodyMap::settle(); surrounding: rho - rho_rest of the fluid around the body of each slot; bodies:
+  // centre and motion of the slots, to whose mass rho - rho_rest of the
   // cells that each has uncovered is added. Call after the map is settled and before the halo exchange. Every rank
   // calls it each step.
   template <typename Real>
   RefillTotals fill(lbm::Fluid<Real>& fluid, const std::vector<CellChange>& changes, const Hydrostatic& rest,
-                    std::vector<LinkBody>& bodies);
+                    std::span<const double> surrounding, std::vector<LinkBody>& bodies);
 
 private:
   // Sums over the fluid neighbours of one uncovered cell; sent between ranks as it is.
@@ -63,9 +65,8 @@ private:
   void add_own_neighbours(const lbm::Fluid<Real>& fluid, const Hydrostatic& rest,
                           std::vector<Uncovered>& uncovered) const;
   void exchange(std::vector<Uncovered>& uncovered) const;
-  // at_rest: rho_rest - 1 in the cell.
-  static std::array<double, 19> populations_of(const Neighbours& neighbours, double at_rest, const Vec3& velocity,
-                                               const Vec3& force);
+  static double excess_of(const Neighbours& neighbours, double surrounding);
+  static std::array<double, 19> populations_of(double deviation, const Vec3& velocity, const Vec3& force);
 
   const Decomposition& decomposition_;
   MPI_Comm communicator_;

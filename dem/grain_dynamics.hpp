@@ -33,6 +33,8 @@
 #include "dem/motion/walls.hpp"
 #include "dem/ranks/ghost_exchange.hpp"
 #include "dem/ranks/grain_batch.hpp"
+#include "dem/supply/supply.hpp"
+#include "dem/supply/turnover.hpp"
 
 #include <mpi.h>
 
@@ -54,6 +56,8 @@ struct GrainParameters {
   std::vector<Plane> walls;
   std::vector<Solid> solids;
   std::vector<PrescribedMotion> assemblies;  // of the rigid assemblies the seeds name
+  std::vector<Supply> supplies;              // of grains like those of the start: no larger, none of other materials
+  std::vector<Sink> sinks;
   // N, of a grain by its mass (kg) and radius (m, of a clump that of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
   double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
@@ -103,6 +107,11 @@ public:
       : GrainDynamics(decomposition, communicator, parameters, GrainSeeds{grains, clumps}) {}
   GrainDynamics(const GrainDynamics&) = delete;
   GrainDynamics& operator=(const GrainDynamics&) = delete;
+
+  // Takes grains in sinks out of the box and brings in those that are due, before prepare(). True if slots changed.
+  // fluid_velocity: m/s, at a point that this rank owns, for those that come in with it; empty: they come in at rest.
+  // Without sinks and supplies it does nothing; with them it is one reduction, or two. Collective.
+  bool turn_over(const std::function<Vec3(const Vec3& point)>& fluid_velocity = {});
 
   // Prepares the sub-steps of a fluid step: wraps positions and, if some grain may leave its half skin during them,
   // moves grains to the rank of their centre and rebuilds ghosts and neighbour list. True if slots changed. Throws
@@ -154,7 +163,10 @@ public:
   std::int64_t global_count() const { return global_count_; }  // rows over all ranks: grains and members of clumps
   std::int64_t clump_count() const { return clump_count_; }    // over all ranks
   std::int64_t member_count() const { return member_count_; }  // members of clumps over all ranks
-  std::int64_t body_count() const { return global_count_ - member_count_ + clump_count_; }  // a clump counts once
+  std::int64_t body_count() const { return global_count_ - member_count_ + clump_count_; }       // a clump counts once
+  GlobalId id_limit() const { return std::max<GlobalId>(global_count_, turnover_.id_limit()); }  // ids are below it
+  // Grains in the box and the balance of turnover.hpp; empty without supplies and sinks.
+  std::vector<Diagnostic> turnover_diagnostics() const;
   void show_clumps(GrainView& view) const;             // the entries of the view that clumps have
   std::span<const std::uint8_t> motion() const;        // GrainView::motion, of owned grains
   std::int64_t rebuilds() const { return rebuilds_; }  // since construction or load
@@ -236,10 +248,17 @@ private:
   std::vector<std::size_t> deep_in_solids() const;
   bool rebuild_for(const Outlook& outlook, int sub_steps);
   void rebuild();
+  void rebuild_with(ContactHistories histories);
+  std::vector<int> sink_of_slots() const;
+  std::vector<TravellingBody> take_leaving(const std::vector<int>& sink) const;
+  void exchange_bodies(std::span<const TravellingBody> leaving, std::span<const TravellingBody> arriving,
+                       const std::function<Vec3(const Vec3&)>& fluid_velocity, std::span<const Entrance* const> by);
+  void save_turnover(ArchiveWriter& archive, const std::string& group) const;
+  void load_turnover(ArchiveReader& archive, const std::string& group);
   void move_cuts();
   void migrate(ContactHistories& histories);
-  ContactHistories load_histories(ArchiveReader& archive, const std::string& group, const std::vector<int>& owner,
-                                  bool with_walls);
+  ContactHistories load_histories(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
+                                  const std::vector<int>& owner, bool with_walls);
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
   void build_dependents(const ContactHistories& histories);
@@ -283,6 +302,8 @@ private:
   std::vector<PlacedSolid> solids_;
   bool walls_change_, solids_change_;
   Assemblies assemblies_;
+
+  Turnover turnover_;
 
   GrainStore store_;
   GhostExchange ghosts_;

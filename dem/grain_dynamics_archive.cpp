@@ -4,10 +4,12 @@
 // law keeps, by the names that the law gives to the parts: contact_spring or contact_mindlin_spring; with rolling
 // friction contact_rolling; and so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and
 // offset, and one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names
-// of struct ClumpRow.
+// of struct ClumpRow. Where ids have gaps, because grains have left or come in, also the column id; and what supplies
+// and sinks have brought and taken, in attributes, and the bodies that return, as such rows below "returning".
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/row_range.hpp"
+#include "core/state/whole_dataset.hpp"
 #include "dem/contact/contact_archive.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
@@ -18,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -29,15 +33,17 @@ constexpr const char* vector_names[GrainRow::vectors] = {
     "position", "velocity", "angular_velocity", "contact_force", "contact_torque", "load_force", "load_torque"};
 
 void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const RowRange& share,
-                  int attached_width, bool with_clumps) {
+                  int attached_width, bool with_ids, bool with_clumps) {
   std::vector<double> radius, mass, vectors;
-  std::vector<std::int64_t> motion, material;
+  std::vector<std::int64_t> id, motion, material;
   for (const GrainRow& row : batch.rows) {
+    id.push_back(row.id);
     radius.push_back(row.radius);
     mass.push_back(row.mass);
     motion.push_back(row.motion);
     material.push_back(row.material);
   }
+  if (with_ids) archive.write(group + "/id", id, share.box());
   archive.write(group + "/radius", radius, share.box());
   archive.write(group + "/mass", mass, share.box());
   archive.write(group + "/motion", motion, share.box());
@@ -64,13 +70,16 @@ GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const R
   GrainBatch batch;
   batch.rows.resize(rows);
   std::vector<double> radius(rows), mass(rows), vectors(3 * rows);
-  std::vector<std::int64_t> motion(rows), material(rows);
+  std::vector<std::int64_t> id(rows), motion(rows), material(rows);
+  if (archive.has(group + "/id"))
+    archive.read(group + "/id", id, share.box());
+  else
+    std::iota(id.begin(), id.end(), share.first);
   archive.read(group + "/radius", radius, share.box());
   archive.read(group + "/mass", mass, share.box());
   archive.read(group + "/motion", motion, share.box());
   archive.read(group + "/material", material, share.box());
-  for (std::size_t r = 0; r < rows; ++r)
-    batch.rows[r] = {share.first + static_cast<std::int64_t>(r), motion[r], material[r], radius[r], mass[r], {}};
+  for (std::size_t r = 0; r < rows; ++r) batch.rows[r] = {id[r], motion[r], material[r], radius[r], mass[r], {}};
   for (int v = 0; v < GrainRow::vectors; ++v) {
     archive.read(group + "/" + vector_names[v], vectors, share.box(3));
     for (std::size_t r = 0; r < rows; ++r)
@@ -199,10 +208,117 @@ std::vector<LightestGrain> lightest_of(const GrainStore& store, const std::vecto
   return lightest;
 }
 
+// The ranks that have read the grains, by id.
+class Readers {
+public:
+  // batch: the rows that this rank has read, in order of id. Collective.
+  Readers(const GrainBatch& batch, MPI_Comm communicator) : first_(static_cast<std::size_t>(size_of(communicator))) {
+    const GlobalId first = batch.rows.empty() ? std::numeric_limits<GlobalId>::max() : batch.rows.front().id;
+    MPI_Allgather(&first, 1, MPI_INT64_T, first_.data(), 1, MPI_INT64_T, communicator);
+    for (std::size_t rank = first_.size() - 1; rank > 0; --rank)
+      first_[rank - 1] = std::min(first_[rank - 1], first_[rank]);
+  }
+  int rank_of(GlobalId id) const {
+    return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), id) - first_.begin()) - 1;
+  }
+
+private:
+  std::vector<GlobalId> first_;  // id of each rank, or of the next one that has read any
+};
+
+// Number of the row with an id; none: it is not in the batch, which is in order of id.
+std::optional<std::size_t> row_of(const GrainBatch& batch, GlobalId id) {
+  const auto found = std::lower_bound(batch.rows.begin(), batch.rows.end(), id,
+                                      [](const GrainRow& row, GlobalId wanted) { return row.id < wanted; });
+  if (found == batch.rows.end() || found->id != id) return std::nullopt;
+  return static_cast<std::size_t>(found - batch.rows.begin());
+}
+
 }  // namespace
 
+// Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, and bodies and mass of each
+// supply and sink.
+void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& group) const {
+  if (!turnover_.any()) return;
+  const Turnover::State& state = turnover_.state();
+  archive.attribute(group + "/first_supplied_id", turnover_.first_id());
+  archive.attribute(group + "/largest_radius", largest_radius_);
+  archive.attribute(group + "/largest_offset", largest_offset_);
+  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
+    for (std::size_t n = 0; n < tallies->size(); ++n) {
+      archive.attribute(fmt::format("{}/{}_{}_bodies", group, name, n), (*tallies)[n].bodies);
+      archive.attribute(fmt::format("{}/{}_{}_mass", group, name, n), (*tallies)[n].mass);
+    }
+  if (state.returning.empty()) return;
+  // The first rank writes all that return, body by body.
+  const std::string returning = group + "/returning";
+  GrainBatch batch;
+  std::vector<ClumpRow> clumps;
+  std::vector<double> due;
+  std::vector<std::int64_t> sink;
+  for (const ReturningBody& back : state.returning) {
+    batch.rows.insert(batch.rows.end(), back.body.rows.begin(), back.body.rows.end());
+    if (back.body.clump) clumps.push_back(*back.body.clump);
+    due.push_back(back.due);
+    sink.push_back(static_cast<std::int64_t>(back.sink));
+  }
+  const auto all_on_first = [this](std::size_t rows) {
+    RowRange share(static_cast<std::int64_t>(rows), 1, 0);
+    if (rank_of(communicator_) != 0) share.last = 0;
+    return share;
+  };
+  const auto written = [this](auto& values) {
+    if (rank_of(communicator_) != 0) values.clear();
+  };
+  const RowRange rows = all_on_first(batch.rows.size()), clump_rows = all_on_first(clumps.size());
+  const bool with_clumps = !clumps.empty();
+  written(batch.rows);
+  written(clumps);
+  write_grains(archive, returning, batch, rows, 0, true, with_clumps);
+  if (with_clumps) write_clumps(archive, returning, std::move(clumps), clump_rows);
+  write_whole(archive, communicator_, returning + "/due", due);
+  write_whole(archive, communicator_, returning + "/sink", sink);
+}
+
+void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& group) {
+  if (!turnover_.any() || !archive.has(group + "/first_supplied_id")) return;
+  turnover_.set_first_id(archive.integer_attribute(group + "/first_supplied_id"));
+  turnover_.set_largest(archive.real_attribute(group + "/largest_radius"),
+                        archive.real_attribute(group + "/largest_offset"));
+  Turnover::State state = turnover_.state();
+  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
+    for (std::size_t n = 0; n < tallies->size(); ++n) {
+      (*tallies)[n].bodies = archive.integer_attribute(fmt::format("{}/{}_{}_bodies", group, name, n));
+      (*tallies)[n].mass = archive.real_attribute(fmt::format("{}/{}_{}_mass", group, name, n));
+    }
+  state.returning.clear();
+  const std::string returning = group + "/returning";
+  if (archive.has(returning + "/due")) {
+    const auto due = read_whole<double>(archive, returning + "/due");
+    const auto sink = read_whole<std::int64_t>(archive, returning + "/sink");
+    const auto count_of = [&](const char* name) {
+      return static_cast<std::int64_t>(archive.shape(returning + name)[0]);
+    };
+    const GrainBatch batch = read_grains(archive, returning, RowRange(count_of("/radius"), 1, 0), 0);
+    std::vector<ClumpRow> clumps;
+    if (archive.has(returning + "/clump_id"))
+      clumps = read_clumps(archive, returning, RowRange(count_of("/clump_id"), 1, 0));
+    for (const GrainRow& row : batch.rows) {
+      if (row.clump < 0 || row.id == row.clump) {
+        const std::size_t n = state.returning.size();
+        state.returning.push_back({{}, static_cast<std::size_t>(sink.at(n)), due.at(n)});
+        const auto clump =
+            std::find_if(clumps.begin(), clumps.end(), [&](const ClumpRow& c) { return c.id == row.id; });
+        if (row.clump >= 0) state.returning.back().body.clump = *clump;
+      }
+      state.returning.back().body.rows.push_back(row);
+    }
+  }
+  turnover_.set_state(std::move(state));
+}
+
 void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
-  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+  const int ranks = size_of(communicator_);
   archive.attribute(group + "/walls", static_cast<std::int64_t>(parameters_.walls.size()));
   if (!parameters_.solids.empty())
     archive.attribute(group + "/solids", static_cast<std::int64_t>(parameters_.solids.size()));
@@ -210,16 +326,19 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
   archive.attribute(group + "/time", time());
   archive.attribute(group + "/system_columns", static_cast<std::int64_t>(parameters_.attached_width));
   assemblies_.save(archive, group, communicator_);
+  // Every rank writes the rows of an even share of the ids, which is one of the rows where no id is missing.
   std::vector<int> home;
-  for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(rank_of_row(store_.id[s], global_count_, ranks));
-  write_grains(archive, group, exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width),
-               RowRange(global_count_, ranks, me), store_.attached_width, clump_count_ > 0);
+  for (std::size_t s = 0; s < store_.owned; ++s) home.push_back(rank_of_row(store_.id[s], id_limit(), ranks));
+  const GrainBatch batch = exchange_grains(communicator_, owned_grains(store_), home, store_.attached_width);
+  const RowRange share = RowRange::of_rows(static_cast<std::int64_t>(batch.rows.size()), communicator_);
+  write_grains(archive, group, batch, share, store_.attached_width, id_limit() != global_count_, clump_count_ > 0);
+  save_turnover(archive, group);
   if (clump_count_ > 0) {
     std::vector<ClumpRow> clumps;
     home.clear();
     for (std::size_t n = 0; n < clumps_.size(); ++n) {
       clumps.push_back(row_of(clumps_[n]));
-      home.push_back(rank_of_row(clumps.back().id, global_count_, ranks));
+      home.push_back(rank_of_row(clumps.back().id, id_limit(), ranks));
     }
     clumps = exchange_rows(communicator_, clumps, home);
     const RowRange clump_share = RowRange::of_rows(static_cast<std::int64_t>(clumps.size()), communicator_);
@@ -235,7 +354,7 @@ void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const
     const GlobalId first = known.key(n).first;
     if (!std::binary_search(store_.id.begin(), owned_end, first)) continue;
     mine.add(known.key(n), known.values(n));
-    home.push_back(rank_of_row(first, global_count_, ranks));
+    home.push_back(rank_of_row(first, id_limit(), ranks));
   }
   ContactHistories rows = mine.exchanged(communicator_, home);
   rows.sort();
@@ -248,6 +367,10 @@ void GrainDynamics::take(ArchiveReader& archive, const std::string& group, bool 
   const auto saved = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   if (global_count_ > 0 && saved != global_count_)
     throw InputError(fmt::format("There are {} grains, but this system has {}.", saved, global_count_));
+  if (archive.has(group + "/id"))
+    throw InputError(
+        "Grains have come into the other run or left it, so that theirs are not those of this case any more; take the "
+        "bed.h5 that it has left, as placement.file of a population.");
   if (assemblies_.any())
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
   restore(archive, group, with_columns ? Restored::start : Restored::start_without_columns);
@@ -279,6 +402,8 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   if (timed && archive.has(group + "/time"))  // the sub-steps may be others now, the time is not
     steps_done_ = std::llround(archive.real_attribute(group + "/time") / parameters_.time_step);
   if (!as_start) assemblies_.load(archive, group);
+  turnover_.set_first_id(global_count_);
+  if (!as_start) load_turnover(archive, group);
   check_prescribed_speed();
   if (walls_change_) place_walls(time(), time());
   if (solids_change_) place_solids(time(), time());
@@ -295,8 +420,9 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
     largest_offset = std::max(largest_offset, Vec3(row.offset.data()).norm());
     members += row.clump >= 0;
   }
-  largest_radius_ = max_over_ranks(communicator_, largest);
-  largest_offset_ = max_over_ranks(communicator_, largest_offset);
+  // Supplies bring grains like those of the start, which may all have left.
+  largest_radius_ = std::max(turnover_.largest_radius(), max_over_ranks(communicator_, largest));
+  largest_offset_ = std::max(turnover_.largest_offset(), max_over_ranks(communicator_, largest_offset));
   member_count_ = sum_over_ranks(communicator_, members);
   ghosts_ = GhostExchange(decomposition_, communicator_, ghost_reach(), largest_offset_);
 
@@ -307,7 +433,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
     owner.push_back(decomposition_.owner_of(x));
   }
   const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
-  const ContactHistories histories = load_histories(archive, group, owner, same_walls);
+  const ContactHistories histories = load_histories(archive, group, batch, owner, same_walls);
 
   replace_owned(store_, exchange_grains(communicator_, std::move(batch), owner, store_.attached_width));
   const std::vector<LightestGrain> lightest = lightest_of(store_, clumps, materials_.count(), communicator_);
@@ -318,11 +444,12 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   rebuilds_ = 0;
 }
 
-// The histories of the contacts of the grains that will be here, sorted by ids. owner: of the grains that this rank
-// read.
+// The histories of the contacts of the grains that will be here, sorted by ids. batch, owner: the grains that this rank
+// read, and their owners.
 ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std::string& group,
-                                               const std::vector<int>& owner, bool with_walls) {
-  const int ranks = size_of(communicator_), me = rank_of(communicator_);
+                                               const GrainBatch& batch, const std::vector<int>& owner,
+                                               bool with_walls) {
+  const Readers readers(batch, communicator_);
   constexpr int no_rank = -1;
   const auto sent_on = [&](const ContactHistories& histories, const auto& rank_for) {
     ContactHistories sent(histories.width());
@@ -339,10 +466,11 @@ ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std
   };
   // First to the ranks that read one of its grains and so know the owner, then to the owners.
   const ContactHistories read = read_histories(archive, group, history_parts_of(list_), with_walls, communicator_);
-  const ContactHistories met = sent_on(read, [&](GlobalId id) { return rank_of_row(id, global_count_, ranks); });
-  const RowRange grains(global_count_, ranks, me);
-  return sent_on(
-      met, [&](GlobalId id) { return grains.has(id) ? owner[static_cast<std::size_t>(id - grains.first)] : no_rank; });
+  const ContactHistories met = sent_on(read, [&](GlobalId id) { return readers.rank_of(id); });
+  return sent_on(met, [&](GlobalId id) {
+    const std::optional<std::size_t> row = row_of(batch, id);
+    return row ? owner[*row] : no_rank;
+  });
 }
 
 // The clumps with their centre here. Members go to the rank of their clump's centre: `owner` of the rows of `batch` is
@@ -356,23 +484,21 @@ std::vector<Clump> GrainDynamics::load_clumps(ArchiveReader& archive, const std:
   check_integrator();
   // Every rank that read a member is told of the clump; the one that read the first member passes it on.
   const std::vector<ClumpRow> read = read_clumps(archive, group, RowRange(clump_count_, ranks, me));
+  const Readers readers(batch, communicator_);
   std::vector<ClumpRow> sent;
   std::vector<int> to;
   for (const ClumpRow& row : read)
-    for (int rank = rank_of_row(row.id, global_count_, ranks);
-         rank <= rank_of_row(row.id + row.members - 1, global_count_, ranks); ++rank) {
+    for (int rank = readers.rank_of(row.id); rank <= readers.rank_of(row.id + row.members - 1); ++rank) {
       sent.push_back(row);
       to.push_back(rank);
     }
-  const std::int64_t first = RowRange(global_count_, ranks, me).first;
-  const auto last = first + static_cast<std::int64_t>(batch.rows.size());
   std::vector<ClumpRow> passed;
   std::vector<int> destination;
   for (const ClumpRow& row : exchange_rows(communicator_, sent, to)) {
     const int centre_owner = decomposition_.owner_of(box_.wrapped(Vec3(row.centre)));
-    for (std::int64_t id = std::max(row.id, first); id < std::min(row.id + row.members, last); ++id)
-      owner[static_cast<std::size_t>(id - first)] = centre_owner;
-    if (row.id < first) continue;
+    for (GlobalId id = row.id; id < row.id + row.members; ++id)
+      if (const std::optional<std::size_t> here = row_of(batch, id)) owner[*here] = centre_owner;
+    if (!row_of(batch, row.id)) continue;
     passed.push_back(row);
     destination.push_back(centre_owner);
   }

@@ -84,8 +84,9 @@ void GrainDynamics::wrap_positions() {
   clumps_.wrap(box_);
 }
 
-void GrainDynamics::rebuild() {
-  ContactHistories histories = histories_of(list_, store_, planes_.size());
+void GrainDynamics::rebuild() { rebuild_with(histories_of(list_, store_, planes_.size())); }
+
+void GrainDynamics::rebuild_with(ContactHistories histories) {
   if (size_of(communicator_) > 1) {
     if (parameters_.movable_cuts) move_cuts();
     migrate(histories);

@@ -75,6 +75,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
       solids_change_(std::any_of(parameters.solids.begin(), parameters.solids.end(),
                                  [](const Solid& solid) { return solid.motion.moves(); })),
       assemblies_(parameters.assemblies, seeds.grains),
+      turnover_(parameters.supplies, parameters.sinks, decomposition.box()),
       store_(columns_of(parameters), parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
@@ -125,6 +126,8 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
   global_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(batch.rows.size()));
   clump_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(mine.size()));
   member_count_ = sum_over_ranks(communicator_, members);
+  turnover_.set_first_id(global_count_);
+  turnover_.set_largest(largest_radius_, largest_offset_);
   check_time_step(parameters_, lightest, body_count());
   check_lubrication(parameters_, lightest, largest_radius_, box_);
   replace_owned(store_, batch);

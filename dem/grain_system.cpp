@@ -41,6 +41,10 @@ GrainSystem::GrainSystem(const Decomposition& decomposition, MPI_Comm communicat
       motion_(timer_.phase("grain motion")) {}
 
 void GrainSystem::advance() {
+  {
+    const auto scope = timer_.measure(lists_);
+    grains_.turn_over();
+  }
   for (int done = 0; done < sub_steps_;) {
     int now = sub_steps_ - done;
     {
@@ -65,6 +69,7 @@ Snapshot GrainSystem::snapshot() const {
   snapshot.decomposition = &grains_.decomposition();
   snapshot.contacts = this;
   snapshot.grains.global_count = grains_.global_count();
+  snapshot.grains.id_limit = grains_.id_limit();
   snapshot.grains.disk_thickness = grains_.parameters().disk_thickness;
   snapshot.grains.id = {store.id.data(), owned};
   snapshot.grains.radius = {store.radius.data(), owned};
@@ -93,6 +98,7 @@ std::vector<Diagnostic> GrainSystem::diagnostics() const {
         {restless_diagnostic, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
   if (field_)
     for (const Diagnostic& diagnostic : field_->diagnostics(time())) diagnostics.push_back(diagnostic);
+  for (const Diagnostic& diagnostic : grains_.turnover_diagnostics()) diagnostics.push_back(diagnostic);
   if (wall_names_.empty() && grains_.parameters().solids.empty()) return diagnostics;
   const std::vector<Vec3> forces = grains_.wall_forces();
   for (std::size_t wall = 0; wall < wall_names_.size(); ++wall)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace thalweg::analysis {
 
@@ -20,10 +21,9 @@ Entrainment::Entrainment(MPI_Comm communicator, const PeriodicBox& box, Entrainm
 void Entrainment::observe(const Snapshot& snapshot) {
   if (snapshot.step <= seen_step_ || !counts_from(settings_.from, snapshot.time)) return;
   seen_step_ = snapshot.step;
-  if (!homes_) {
-    homes_.emplace(communicator_, snapshot.grains.global_count);
-    memory_.assign(homes_->size(), {});
-  }
+  if (!homes_) homes_.emplace(communicator_, snapshot.grains.end_of_ids());
+  homes_->grow(snapshot.grains.end_of_ids());
+  memory_.resize(homes_->size());
   const bool due = settings_.grains.empty() && snapshot.step - chosen_step_ >= settings_.refresh_steps;
   if (chosen_step_ < 0 || due) choose(snapshot);
   count(take_samples(snapshot), snapshot.time);
@@ -131,7 +131,7 @@ EntrainedGrain Entrainment::grain_of(const Start& start) const {
           settings_.weight(start.mass, start.radius), settings_.buoyancy(start.mass, start.radius)};
 }
 
-// started: ids whose home is here, ascending. Homes ascend with ranks, so that events are in the order of ids.
+// started: ids whose home is here, ascending. Events are in the order of ids.
 void Entrainment::count(const std::vector<GlobalId>& started, double time) {
   if (sum_over_ranks(communicator_, static_cast<std::int64_t>(started.size())) == 0) return;
   std::vector<Start> starts_here;
@@ -142,8 +142,12 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
     starts_here.push_back(start);
   }
   const std::vector<GrainRing> rings = rings_on_first_rank(started);
-  std::size_t number = 0;
-  for (const Start& start : Ranks(communicator_).gathered(std::move(starts_here))) {
+  const std::vector<Start> starts = Ranks(communicator_).gathered(std::move(starts_here));
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return starts[a].id < starts[b].id; });
+  for (const std::size_t number : order) {
+    const Start& start = starts[number];
     ++events_;
     if (std::isfinite(start.share)) {
       ++shares_;
@@ -152,7 +156,7 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
     }
     if (rank_of(communicator_) != 0) continue;
     const EntrainedGrain grain = grain_of(start);
-    const GrainRing& ring = rings[number++];
+    const GrainRing& ring = rings[number];
     pending_.push_back(event_of(fmt::format("event_{:06d}", events_), grain, ring,
                                 entraining_of(grain, ring, settings_.moving_speed)));
     pending_.back().time = time;

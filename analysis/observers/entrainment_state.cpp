@@ -51,10 +51,12 @@ void Entrainment::save(ArchiveWriter& archive) const {
   archive.attribute("entrainment/sum_of_shares", sum_of_shares_);
   archive.attribute("entrainment/sum_of_squares", sum_of_squares_);
   if (!homes_) return;
-  archive.write("entrainment/grains", std::span<const double>(rows_of_memory()), homes_->box(memory_columns));
+  homes_->write(archive, "entrainment/grains", rows_of_memory(), memory_columns);
   std::vector<SampleRow> samples;
   std::vector<TouchRow> touches;
-  for (const Memory& m : memory_) add_rows(0, m.ring, samples, touches);
+  for (std::size_t m = 0; m < memory_.size(); ++m) add_rows(homes_->id_at(m), memory_[m].ring, samples, touches);
+  samples = homes_->in_order_of_ids(std::move(samples));
+  touches = homes_->in_order_of_ids(std::move(touches));
   std::vector<double> values;
   for (const SampleRow& row : samples) {
     values.push_back(row.time);
@@ -78,12 +80,11 @@ bool Entrainment::load(ArchiveReader& archive) {
   if (!were_saved_with(archive, "entrainment", definitions())) return false;
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
   memory_.assign(homes_->size(), {});
-  std::vector<double> rows(memory_.size() * memory_columns);
-  archive.read("entrainment/grains", std::span<double>(rows), homes_->box(memory_columns));
+  const auto rows = homes_->read<double>(archive, "entrainment/grains", memory_columns);
   std::int64_t watched = 0;
   bool as_listed = true;
   for (std::size_t m = 0; m < memory_.size(); ++m) {
-    const GlobalId id = homes_->begin() + static_cast<GlobalId>(m);
+    const GlobalId id = homes_->id_at(m);
     memory_[m].watched = rows[m * memory_columns] != 0.0;
     watched += memory_[m].watched ? 1 : 0;
     as_listed &= memory_[m].watched == std::binary_search(settings_.grains.begin(), settings_.grains.end(), id);
@@ -129,7 +130,7 @@ void Entrainment::restore_rings(ArchiveReader& archive, std::span<const double> 
     memory.rest = Vec3(row[5], row[6], row[7]);
     for (auto left = static_cast<std::int64_t>(row[8]); left > 0; --left, sample += sample_columns) {
       SampleRow one{0, sample[0], {}, static_cast<std::int64_t>(sample[sample_columns - 1])};
-      one.record.id = homes_->begin() + static_cast<GlobalId>(m);
+      one.record.id = homes_->id_at(m);
       std::copy_n(sample + 1, one.record.values.size(), one.record.values.begin());
       memory.ring.push_back(sample_of(one, next));
     }

@@ -32,7 +32,7 @@ bool TransportRate::measure(const Snapshot& snapshot, bool counts) {
   const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
   measure_bodies(snapshot, bodies);
   // A state seen twice, as at a restart, does not change the hops.
-  hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.global_count, bodies, counts);
+  hops_.observe(snapshot.time, snapshot.decomposition->box(), snapshot.grains.end_of_ids(), bodies, counts);
   return true;
 }
 

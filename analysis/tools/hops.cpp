@@ -36,10 +36,9 @@ Hops::Hops(MPI_Comm communicator, double length, double time, double moving_spee
 
 void Hops::observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies,
                    bool counts) {
-  if (!homes_ || homes_->count() != id_count) {
-    homes_.emplace(communicator_, id_count);
-    memory_.assign(homes_->size(), {});
-  }
+  if (!homes_) homes_.emplace(communicator_, id_count);
+  homes_->grow(id_count);
+  memory_.resize(homes_->size());
   std::vector<Sighting> sightings;
   for (const Body& body : bodies) {
     const bool moves = body.velocity.squaredNorm() > moving_speed_ * moving_speed_;
@@ -54,13 +53,18 @@ void Hops::observe(double time, const PeriodicBox& box, GlobalId id_count, const
 
 void Hops::follow(Memory& memory, const Sighting& seen, double time, const PeriodicBox& box, bool counts,
                   std::vector<double>& ended) const {
-  const bool moves = seen.moves != 0.0, known = memory.phase != unseen;
+  const bool moves = seen.moves != 0.0;
   double way = 0.0;
-  if (known) {
+  if (memory.phase != unseen) {
     const double expected = 0.5 * (memory.v_x + seen.v_x) * (time - last_time_);
     way = seen.x - memory.x;
-    if (box.periodic[0]) way -= box.size[0] * std::round((way - expected) / box.size[0]);
+    const double boxes = std::round((way - expected) / box.size[0]);
+    if (box.periodic[0])
+      way -= box.size[0] * boxes;
+    else if (boxes != 0.0)
+      memory.phase = unseen;  // it has left by a sink and come in again
   }
+  const bool known = memory.phase != unseen;
   if (memory.phase == hopping || memory.phase == hopping_uncounted) {
     memory.length += way;
     if (!moves && memory.phase == hopping) ended.insert(ended.end(), {memory.length, time - memory.begin});
@@ -129,7 +133,7 @@ void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   std::vector<double> rows;
   for (const Memory& m : memory_)
     rows.insert(rows.end(), {static_cast<double>(m.phase), m.x, m.v_x, m.begin, m.length});
-  archive.write(group + "/hops_of_grains", std::span<const double>(rows), homes_->box(columns));
+  homes_->write(archive, group + "/hops_of_grains", std::move(rows), columns);
 }
 
 void Hops::load(ArchiveReader& archive, const std::string& group) {
@@ -144,8 +148,7 @@ void Hops::load(ArchiveReader& archive, const std::string& group) {
   std::copy(counts.begin() + static_cast<std::ptrdiff_t>(cells), counts.end(), times_.counts().begin());
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/hops_of_grains")[0]));
   memory_.assign(homes_->size(), {});
-  std::vector<double> rows(memory_.size() * columns);
-  archive.read(group + "/hops_of_grains", std::span<double>(rows), homes_->box(columns));
+  const auto rows = homes_->read<double>(archive, group + "/hops_of_grains", columns);
   for (std::size_t m = 0; m < memory_.size(); ++m) {
     const double* row = rows.data() + m * columns;
     memory_[m] = {static_cast<Phase>(static_cast<int>(row[0])), row[1], row[2], row[3], row[4]};

@@ -8,7 +8,8 @@
 // that have not ended.
 //
 // Between two measurements a grain is taken to have gone to that periodic image of its new place which lies nearest to
-// where the mean of its two velocities would have taken it.
+// where the mean of its two velocities would have taken it. A grain that has gone by a sink and come in again begins
+// anew.
 #pragma once
 
 #include "analysis/observer/observer.hpp"
@@ -62,7 +63,7 @@ private:
     double begin = 0.0;         // s, of the hop
     double length = 0.0;        // m, so far
   };
-  static constexpr std::uint64_t columns = 5;
+  static constexpr std::size_t columns = 5;
 
   struct Sighting {
     GlobalId id;

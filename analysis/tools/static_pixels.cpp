@@ -18,21 +18,23 @@ StaticPixels::StaticPixels(MPI_Comm communicator, const PeriodicBox& box, double
 
 bool StaticPixels::look(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
-  const bool first_look = !homes_ || homes_->count() != grains.global_count;
+  const bool first_look = !homes_;
   if (first_look) {
     double largest = 0.0;
     for (const double radius : grains.radius) largest = std::max(largest, radius);
     largest = max_over_ranks(communicator_, largest);
     columns_a_grain_ = static_cast<std::int64_t>(std::ceil(2.0 * largest / width_)) + 1;
-    homes_.emplace(communicator_, grains.global_count);
-    first_.assign(homes_->size(), 0);
-    rows_.assign(homes_->size() * static_cast<std::size_t>(columns_a_grain_), {});
+    homes_.emplace(communicator_, grains.end_of_ids());
     begun_ = snapshot.time;
   }
+  homes_->grow(grains.end_of_ids());
+  first_.resize(homes_->size());
+  rows_.resize(homes_->size() * static_cast<std::size_t>(columns_a_grain_));
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < grains.id.size(); ++i)
     disks.push_back({grains.id[i], grains.position[i].x(), grains.position[i].z(), grains.radius[i]});
   disks = homes_->bring_home(disks);
+  forget_others(disks);
   if (!first_look)
     for (const Disk& disk : disks) narrow(disk);
   const bool complete = !first_look && snapshot.time - begun_ >= static_time_ * (1.0 - 1e-9);
@@ -44,6 +46,15 @@ bool StaticPixels::look(const Snapshot& snapshot) {
   if (first_look || complete)
     for (const Disk& disk : disks) begin(disk);
   return complete;
+}
+
+// Grains that have left cover nothing.
+void StaticPixels::forget_others(const std::vector<Disk>& disks) {
+  std::vector<char> here(homes_->size(), 0);
+  for (const Disk& disk : disks) here[homes_->location_of(disk.id)] = 1;
+  const auto columns = static_cast<std::ptrdiff_t>(columns_a_grain_);
+  for (std::size_t grain = 0; grain < here.size(); ++grain)
+    if (here[grain] == 0) std::fill_n(rows_.begin() + static_cast<std::ptrdiff_t>(grain) * columns, columns, Rows{});
 }
 
 // The first column whose centre a disk may cover.
@@ -107,7 +118,7 @@ void StaticPixels::save(ArchiveWriter& archive, const std::string& group) const 
   archive.attribute(group + "/columns_a_grain", columns_a_grain_);
   if (!surface_.empty()) write_whole(archive, communicator_, group + "/surface", surface_);
   if (!homes_) return;
-  const auto columns = static_cast<std::uint64_t>(columns_a_grain_);
+  const auto columns = static_cast<std::size_t>(columns_a_grain_);
   std::vector<std::int64_t> values;
   for (std::size_t grain = 0; grain < first_.size(); ++grain) {
     values.push_back(first_[grain]);
@@ -116,7 +127,7 @@ void StaticPixels::save(ArchiveWriter& archive, const std::string& group) const 
       values.insert(values.end(), {rows.lowest, rows.highest});
     }
   }
-  archive.write(group + "/pixels_of_grains", std::span<const std::int64_t>(values), homes_->box(1 + 2 * columns));
+  homes_->write(archive, group + "/pixels_of_grains", std::move(values), 1 + 2 * columns);
 }
 
 void StaticPixels::load(ArchiveReader& archive, const std::string& group) {
@@ -127,8 +138,7 @@ void StaticPixels::load(ArchiveReader& archive, const std::string& group) {
   if (archive.has(group + "/surface")) surface_ = read_whole<double>(archive, group + "/surface");
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/pixels_of_grains").at(0)));
   const auto columns = static_cast<std::size_t>(columns_a_grain_), numbers = 1 + 2 * columns;
-  std::vector<std::int64_t> values(homes_->size() * numbers);
-  archive.read(group + "/pixels_of_grains", std::span<std::int64_t>(values), homes_->box(numbers));
+  const auto values = homes_->read<std::int64_t>(archive, group + "/pixels_of_grains", numbers);
   first_.resize(homes_->size());
   rows_.resize(homes_->size() * columns);
   for (std::size_t grain = 0; grain < first_.size(); ++grain) {

@@ -52,6 +52,7 @@ private:
   Rows covered(const Disk& disk, double x, std::int64_t column) const;
   std::int64_t first_column(double x, double radius) const;
   double near(double x, std::int64_t column) const;
+  void forget_others(const std::vector<Disk>& disks);
   void begin(const Disk& disk);
   void narrow(const Disk& disk);
   void finish();

@@ -2,7 +2,7 @@
 
 namespace thalweg::beds {
 
-static void describe(SectionVisitor& visit, RegionKeys& region) {
+void describe(SectionVisitor& visit, RegionKeys& region) {
   visit.vec3("lower", region.lower, {.unit = "m", .meaning = "lower corner", .required = true, .example = 0.0});
   visit.vec3("upper", region.upper, {.unit = "m", .meaning = "upper corner", .required = true, .example = 0.05});
 }

@@ -34,6 +34,7 @@ struct PlacementKeys {
   bool operator==(const PlacementKeys&) const = default;
 };
 
+void describe(SectionVisitor& visit, RegionKeys& region);
 void describe(SectionVisitor& visit, PlacementKeys& placement);
 
 }  // namespace thalweg::beds

@@ -123,22 +123,6 @@ namespace {
 // The draw of counter_random.hpp that sizes use; placements use small numbers.
 constexpr std::uint64_t size_draw = std::uint64_t{1} << 40;
 
-// Place (0 ... count - 1) of every grain among the random numbers of all.
-std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t grain) {
-    return uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw);
-  };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const double ka = key(a), kb = key(b);
-    return ka != kb ? ka < kb : a < b;
-  });
-  std::vector<std::size_t> place(order.size());
-  for (std::size_t p = 0; p < order.size(); ++p) place[order[p]] = p;
-  return place;
-}
-
 std::vector<double> lognormal_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed) {
   const double deviation = std::log(*sizes.geometric_deviation);
   const double lower = std::log(*sizes.minimum / *sizes.median) / deviation;
@@ -213,6 +197,21 @@ double median_by_mass(std::span<const SizeCount> sizes, bool disks) {
     if (below >= 0.5 * whole) return size.diameter;
   }
   return sizes.empty() ? 0.0 : sizes.back().diameter;
+}
+
+std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t grain) {
+    return uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const double ka = key(a), kb = key(b);
+    return ka != kb ? ka < kb : a < b;
+  });
+  std::vector<std::size_t> place(order.size());
+  for (std::size_t p = 0; p < order.size(); ++p) place[order[p]] = p;
+  return place;
 }
 
 std::vector<double> sampled_diameters(const SizesKeys& sizes, std::int64_t count, std::int64_t seed, bool disks) {

@@ -3,6 +3,7 @@
 
 #include "core/keys/section_visitor.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -52,6 +53,9 @@ std::vector<SizeCount> merged(std::vector<SizeCount> sizes);
 
 // The diameter that half of the mass of these grains is finer than; m. sizes: rising. disks: their mass grows as d^2.
 double median_by_mass(std::span<const SizeCount> sizes, bool disks);
+
+// Place (0 ... count - 1) of every grain among the random numbers of all.
+std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed);
 
 // One diameter (m) for each grain. A grain's quantile is the place of its random number among those of the population,
 // so that the population follows the distribution as closely as its number allows, and the seed only shuffles.

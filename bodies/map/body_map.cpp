@@ -115,7 +115,11 @@ const std::vector<CellChange>& BodyMap::settle() {
   return changes_;
 }
 
-void BodyMap::begin_update() { changes_.clear(); }
+void BodyMap::begin_update() {
+  changes_.clear();
+  free_slots_.insert(free_slots_.end(), just_freed_.begin(), just_freed_.end());
+  just_freed_.clear();
+}
 
 BodySlot BodyMap::add(GlobalId id, double radius, GlobalId clump) {
   CHECK(!slot_of_id_.contains(id));
@@ -146,7 +150,7 @@ void BodyMap::remove(BodySlot slot) {
   remap(slot, Vec3::Constant(2.0 * nowhere));
   slot_of_id_.erase(body(slot).id);
   body(slot).id = MappedBody::nobody;
-  free_slots_.push_back(slot);
+  just_freed_.push_back(slot);
 }
 
 void BodyMap::remap(BodySlot slot, const Vec3& centre) {

@@ -74,6 +74,7 @@ private:
   std::vector<MappedBody> bodies_;
   int solids_ = 0;
   std::vector<BodySlot> free_slots_;
+  std::vector<BodySlot> just_freed_;  // in this update: their cells are still to be refilled, with their motion
   std::unordered_map<GlobalId, BodySlot> slot_of_id_;
   std::unordered_map<std::ptrdiff_t, std::vector<int>> claimants_;  // bodies that claim a cell in vain, by cell
   std::unordered_map<std::ptrdiff_t, std::vector<int>> beyond_;     // bodies that claim a cell of the second layer

@@ -4,6 +4,7 @@
 #include "core/base/types.hpp"
 #include "core/parallel/decomposition.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -30,6 +31,7 @@ struct ClumpState {
 // and add `clumps`.
 struct GrainView {
   std::int64_t global_count = 0;  // over all ranks
+  GlobalId id_limit = 0;          // ids are below it and the global count; larger where grains have come in or left
   double disk_thickness = 0.0;    // m; 0: spheres
   std::span<const GlobalId> id;
   std::span<const double> radius;          // m
@@ -48,6 +50,7 @@ struct GrainView {
   std::vector<ClumpState> clumps;                  // owned by this rank as are their members, in order of id
   bool is_member(std::size_t grain) const { return !clump.empty() && clump[grain] >= 0; }
   std::int64_t body_count() const { return global_count - member_count + clump_count; }  // a clump counts once
+  GlobalId end_of_ids() const { return std::max(id_limit, global_count); }
   // The motion of a grain, or of a member's clump, that is held, so that no force changes it: the sum of 1 (velocity)
   // and 2 (angular velocity). Higher bits have no meaning here. Empty: everything is free.
   std::span<const std::uint8_t> motion;

@@ -6,6 +6,7 @@
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/imported_fluid.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace thalweg::coupling {
@@ -124,6 +125,17 @@ double LatticeSystem<Real>::mass_owed() const {
   return solid_bodies_.mass_owed() + (grains_ ? grain_bodies_->mass_owed() : 0.0);
 }
 
+// Velocity (m/s) of the fluid at a point of this rank; zero in a body.
+template <typename Real>
+Vec3 LatticeSystem<Real>::velocity_at(const Vec3& point) const {
+  Index3 cell;
+  for (int axis = 0; axis < 3; ++axis)
+    cell[axis] =
+        std::clamp(static_cast<int>(point[axis] / parameters_.units.spacing), 0, decomposition_->cells()[axis] - 1);
+  const std::optional<State> state = state_in(cell);
+  return state ? state->velocity : Vec3::Zero();
+}
+
 template <typename Real>
 void LatticeSystem<Real>::move_bodies() {
   if (!any_moves()) {
@@ -133,7 +145,10 @@ void LatticeSystem<Real>::move_bodies() {
   bool slots_changed = false;
   if (grains_) {
     const auto scope = timer_.measure(phases_.grains);
-    slots_changed = grains_->prepare();
+    const bool turned_over = grains_->turn_over([this](const Vec3& point) { return velocity_at(point); });
+    if (turned_over) grain_bodies_->begin_where_grains_are();
+    if (turned_over) grain_bodies_->set_surroundings(bodies_.reference_density());
+    slots_changed = grains_->prepare() || turned_over;
   }
   {
     const auto scope = timer_.measure(phases_.map);

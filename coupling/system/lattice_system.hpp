@@ -51,8 +51,9 @@ public:
   // largest_lattice_velocity (1), largest_fluid_speed (m/s), mean_density_deviation (1), fluid_cells (1), those of
   // add_extremes() (fluid_diagnostics.hpp); those of SolidBodies, of the last step: what the fluid exerts on the
   // surface of each solid, without the reference pressure. With grains largest_overlap (diameters), largest_grain_speed
-  // (m/s), those of MassBudget and of add_momentum(), if asked for wall_force_bottom_x ... and
-  // fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and body_force_x (N/m^3). Collective.
+  // (m/s), those of MassBudget, of add_momentum() and of GrainDynamics::turnover_diagnostics(), if asked for
+  // wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains mean_velocity_x (m/s) and
+  // body_force_x (N/m^3). Collective.
   std::vector<Diagnostic> diagnostics() const override;
   std::optional<Location> location_of(const std::string& diagnostic) const override;
   void save(ArchiveWriter& archive) const override;
@@ -85,6 +86,7 @@ private:
   bool any_moves() const { return grains_ || solid_bodies_.any_moves(); }
   void place_solids_again();
   void name_phases();
+  Vec3 velocity_at(const Vec3& point) const;
   void move_bodies();
   void exchange_behind_links();
   void record_momentum_budget();

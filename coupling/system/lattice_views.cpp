@@ -28,6 +28,7 @@ void LatticeSystem<Real>::show_grains(Snapshot& s) const {
   s.contacts = this;
   s.momentum = momentum_ ? &*momentum_ : nullptr;
   s.grains.global_count = grains_->global_count();
+  s.grains.id_limit = grains_->id_limit();
   s.grains.id = {store.id.data(), n};
   s.grains.radius = {store.radius.data(), n};
   s.grains.mass = {store.mass.data(), n};
@@ -78,6 +79,7 @@ void LatticeSystem<Real>::add_grain_diagnostics(const lbm::FluidSurvey& survey,
       mass_.diagnostics(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
   diagnostics.insert(diagnostics.end(), budget.begin(), budget.end());
   add_momentum(survey, fluid_.parameters().force, parameters_.units, diagnostics);
+  for (const Diagnostic& diagnostic : grains_->turnover_diagnostics()) diagnostics.push_back(diagnostic);
 }
 
 template <typename Real>

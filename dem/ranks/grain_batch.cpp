@@ -11,20 +11,6 @@ namespace thalweg::dem {
 
 namespace {
 
-void sort_by_id(GrainBatch& batch, int width) {
-  std::vector<std::size_t> order(batch.rows.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return batch.rows[a].id < batch.rows[b].id; });
-  GrainBatch sorted;
-  sorted.rows.reserve(order.size());
-  sorted.attached.reserve(batch.attached.size());
-  for (const std::size_t from : order) {
-    sorted.rows.push_back(batch.rows[from]);
-    for (int c = 0; c < width; ++c) sorted.attached.push_back(batch.attached[from * width + c]);
-  }
-  batch = std::move(sorted);
-}
-
 void add_grain(const GrainStore& store, std::size_t s, GrainBatch& batch) {
   batch.rows.push_back({store.id[s],
                         static_cast<std::int64_t>(store.motion[s]),
@@ -41,6 +27,20 @@ void add_grain(const GrainStore& store, std::size_t s, GrainBatch& batch) {
 }
 
 }  // namespace
+
+void sort_by_id(GrainBatch& batch, int width) {
+  std::vector<std::size_t> order(batch.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return batch.rows[a].id < batch.rows[b].id; });
+  GrainBatch sorted;
+  sorted.rows.reserve(order.size());
+  sorted.attached.reserve(batch.attached.size());
+  for (const std::size_t from : order) {
+    sorted.rows.push_back(batch.rows[from]);
+    for (int c = 0; c < width; ++c) sorted.attached.push_back(batch.attached[from * width + c]);
+  }
+  batch = std::move(sorted);
+}
 
 GrainBatch owned_grains(const GrainStore& store) {
   GrainBatch batch;

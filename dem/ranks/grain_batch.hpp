@@ -38,6 +38,9 @@ GrainBatch owned_grains(const GrainStore& store);
 // Replaces all grains of the store by those of the batch; no ghosts. Rows must be sorted by id.
 void replace_owned(GrainStore& store, const GrainBatch& batch);
 
+// attached_width: values a row.
+void sort_by_id(GrainBatch& batch, int attached_width);
+
 // Sends row i to rank destination[i]; returns what arrived here, sorted by id. Collective.
 GrainBatch exchange_grains(MPI_Comm communicator, GrainBatch batch, const std::vector<int>& destination,
                            int attached_width);

@@ -28,6 +28,18 @@ double largest_offset_of(const std::vector<ClumpSeed>& clumps) {
   return largest;
 }
 
+GrainRow row_of(const GrainSeed& seed, const PeriodicBox& box) {
+  const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity, &r = seed.offset;
+  GrainRow row{seed.id,       static_cast<std::int64_t>(seed.motion),
+               seed.material, seed.radius,
+               seed.mass(),   {},
+               seed.clump,    {r[0], r[1], r[2]}};
+  row.value[GrainRow::position] = {x[0], x[1], x[2]};
+  row.value[GrainRow::velocity] = {v[0], v[1], v[2]};
+  row.value[GrainRow::angular_velocity] = {w[0], w[1], w[2]};
+  return row;
+}
+
 GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const std::vector<Clump>& clumps,
                     const Decomposition& decomposition, int rank, int width) {
   const PeriodicBox box = decomposition.box();
@@ -36,18 +48,8 @@ GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const std::vector<Clump
     return std::binary_search(clumps.begin(), clumps.end(), seed.clump, IdOrder());
   };
   GrainBatch batch;
-  for (const GrainSeed& seed : seeds) {
-    const Vec3 x = box.wrapped(seed.position), &v = seed.velocity, &w = seed.angular_velocity, &r = seed.offset;
-    if (!mine(seed, x)) continue;
-    GrainRow row{seed.id,       static_cast<std::int64_t>(seed.motion),
-                 seed.material, seed.radius,
-                 seed.mass(),   {},
-                 seed.clump,    {r[0], r[1], r[2]}};
-    row.value[GrainRow::position] = {x[0], x[1], x[2]};
-    row.value[GrainRow::velocity] = {v[0], v[1], v[2]};
-    row.value[GrainRow::angular_velocity] = {w[0], w[1], w[2]};
-    batch.rows.push_back(row);
-  }
+  for (const GrainSeed& seed : seeds)
+    if (mine(seed, box.wrapped(seed.position))) batch.rows.push_back(row_of(seed, box));
   std::sort(batch.rows.begin(), batch.rows.end(), [](const GrainRow& a, const GrainRow& b) { return a.id < b.id; });
   batch.attached.assign(batch.rows.size() * width, 0.0);
   return batch;

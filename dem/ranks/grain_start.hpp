@@ -19,6 +19,9 @@ double largest_offset_of(const std::vector<ClumpSeed>& clumps);
 // The clumps whose centre a rank owns, sorted by id.
 std::vector<Clump> clumps_of(const std::vector<ClumpSeed>& seeds, const Decomposition& decomposition, int rank);
 
+// The row of a seed with its position wrapped, without forces.
+GrainRow row_of(const GrainSeed& seed, const PeriodicBox& box);
+
 // The grains and members a rank owns, sorted by id, positions wrapped. clumps: those of this rank, sorted by id; width:
 // of the attached columns, which are zero.
 GrainBatch batch_of(const std::vector<GrainSeed>& seeds, const std::vector<Clump>& clumps,

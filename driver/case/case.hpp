@@ -5,6 +5,7 @@
 #include "analysis/observers/observer_list.hpp"
 #include "beds/population/material_keys.hpp"
 #include "beds/population/population.hpp"
+#include "beds/population/supply_keys.hpp"
 #include "beds/population/wall_keys.hpp"
 #include "continuum/column_keys.hpp"
 #include "core/base/types.hpp"
@@ -176,7 +177,9 @@ struct Case {
   std::optional<FlowCase> flow;  // only while the case is read: it becomes gravity.slope and domain.size
   std::optional<DisksCase> disks;
   std::vector<beds::Population> grains;
-  std::vector<beds::WallKeys> walls;  // of dry grains, besides the faces
+  std::vector<beds::SupplyKeys> supplies;  // grains that come in during the run
+  std::vector<beds::SinkKeys> sinks;       // where they leave
+  std::vector<beds::WallKeys> walls;       // of dry grains, besides the faces
   std::vector<SolidCase> solids;
   beds::ContactKeys contact;
   model_fluid::ModelFluidKeys model_fluid;  // of system: model_fluid

@@ -206,7 +206,8 @@ static void describe_column_run(SectionVisitor& visit, RunCase& run) {
 // Sections of a column; all others belong to a box.
 static void describe_column(SectionVisitor& visit, Case& c) {
   const std::string no_box = "system: continuum is a column and has no box of cells and grains; remove the section";
-  for (const char* section : {"domain", "disks", "walls", "contact", "model_fluid", "coupling", "initial", "solids"})
+  for (const char* section :
+       {"domain", "disks", "walls", "contact", "model_fluid", "coupling", "initial", "solids", "supplies", "sinks"})
     visit.not_here(section, no_box);
   visit.not_here("analysis", "system: continuum shows all it knows in series.csv and profiles.h5; remove the section");
   visit.section("fluid", c.continuum.fluid, {.meaning = "properties of the fluid", .required = true});
@@ -276,6 +277,8 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.list("walls", c.walls, {.meaning = "solid planes, in addition to the faces of the box", .only_if = of_walls});
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
+  visit.list("supplies", c.supplies, {.meaning = "grains that come in during the run", .only_if = of_grains});
+  visit.list("sinks", c.sinks, {.meaning = "where grains leave the box", .only_if = of_grains});
   visit.section("contact", {.meaning = "force between grains that touch, with friction", .only_if = of_grains},
                 [&](SectionVisitor& inside) {
                   describe(inside, c.contact);

@@ -14,8 +14,8 @@ namespace thalweg::driver {
 PeriodicBox grain_box(const Case& c);
 
 // Contact law, time step, sub-steps, skin, rigid assemblies, and the walls: a plane with the walls' friction at every
-// non-periodic face, in the order of the case's faces, then those of the section walls. The body force, ghost width and
-// attached columns are left to the caller.
+// non-periodic face, in the order of the case's faces, then those of the section walls. The body force, ghost width,
+// attached columns, supplies and sinks are left to the caller.
 dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box);
 
 // All grains at the start (beds/population_seeds.hpp), for one process.

@@ -3,6 +3,7 @@
 #include "analysis/observers/probes.hpp"
 #include "analysis/observers/tracks.hpp"
 #include "driver/cost/run_cost.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>
@@ -53,7 +54,7 @@ double bytes_of_a_grain(const Case& c, const std::vector<io::GrainField>& fields
 // there.
 double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
   double count = static_cast<double>(
-      keys.population ? c.grains.at(static_cast<std::size_t>(*keys.population)).row_count() : grain_rows(c));
+      keys.population ? c.grains.at(static_cast<std::size_t>(*keys.population)).row_count() : most_rows(c));
   if (!keys.ids.empty()) count = std::min(count, static_cast<double>(keys.ids.size()));
   if (!keys.box || c.disks || grain_output_facts(c).clumps) return count;
   const double d = smallest_diameter(c), densest = std::numbers::pi / std::sqrt(18.0);
@@ -100,7 +101,7 @@ double bytes_of_checkpoint(const Case& c) {
   const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
   // State and loads of a grain, and three contacts with their springs.
   constexpr double grain_bytes = 900.0;
-  return lattice + static_cast<double>(grain_count(c)) * grain_bytes;
+  return lattice + static_cast<double>(most_rows(c)) * grain_bytes;
 }
 
 std::string bytes_text(double bytes) {

@@ -5,6 +5,7 @@
 #include "driver/case/grain_setup.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +105,7 @@ struct Span {
 // Quantities common to all ranks.
 struct GrainsOfCase {
   explicit GrainsOfCase(const Case& c)
-      : count(static_cast<double>(grain_rows(c))),
+      : count(static_cast<double>(most_rows(c))),
         reach(c.grains.empty() ? 0.0 : reach_of_ghosts(c)),
         height(c.grains.empty() ? 0.0 : settled_height(c)),
         links(bytes_of_links(c)) {}

@@ -73,7 +73,7 @@ void RunOutput::add_grains(const std::filesystem::path& folder, const std::strin
                            const io::GrainOutputKeys& keys, const io::GrainSelectionKeys& selection) {
   if (keys.every > 0.0)
     grains_.emplace_back(keys.every, io::GrainSeries(communicator_, folder, name, selection, keys.fields,
-                                                     population_ends(case_), continue_from_));
+                                                     population_ids(case_), continue_from_));
 }
 
 void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string& name,

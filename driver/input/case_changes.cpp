@@ -92,7 +92,8 @@ bool same(const std::string& one, const std::string& other) {
 }
 
 bool is_in_the_checkpoint(std::string_view key) {
-  constexpr std::array state{"system", "domain.size", "domain.spacing", "disks", "fluid.precision"};
+  constexpr std::array state{"system",          "domain.size", "domain.spacing", "disks",
+                             "fluid.precision", "supplies",    "sinks"};
   const auto is_or_is_below = [key](std::string_view section) {
     return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
   };

@@ -220,20 +220,51 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
                          "reduced");
 }
 
-// Grains bounce off a face through which the water flows, and jam there.
+// The region before an open face in which grains must leave, so that none comes near it: two diameters deep.
+beds::RegionKeys region_before(const Case& c, std::size_t face) {
+  beds::RegionKeys region{Vec3::Zero(), c.domain.size};
+  const auto axis = static_cast<Eigen::Index>(face / 2);
+  const double depth = 2.0 * largest_extent(c);
+  if (face % 2 == 0)
+    region.upper[axis] = std::min(depth, c.domain.size[axis]);
+  else
+    region.lower[axis] = std::max(0.0, c.domain.size[axis] - depth);
+  return region;
+}
+
+// True if a sink takes all grains that come near an open face; it may be thinner than region_before().
+bool has_sink_at(const Case& c, std::size_t face) {
+  beds::RegionKeys needed = region_before(c, face);
+  const auto axis = static_cast<Eigen::Index>(face / 2);
+  const double spared = 0.5 * (needed.upper[axis] - needed.lower[axis]);
+  (face % 2 == 0 ? needed.upper : needed.lower)[axis] += face % 2 == 0 ? -spared : spared;
+  return std::any_of(c.sinks.begin(), c.sinks.end(), [&needed](const beds::SinkKeys& sink) {
+    return (sink.region.lower.array() <= needed.lower.array()).all() &&
+           (sink.region.upper.array() >= needed.upper.array()).all();
+  });
+}
+
+// Grains bounce off a face through which the water flows: they jam at an outlet, unless a sink takes them. An inlet
+// pushes them away.
 void check_open_faces(const Case& c, const io::YamlDocument& document) {
   const auto free = std::find_if(c.grains.begin(), c.grains.end(), [](const auto& grains) { return !grains.held(); });
   if (!has_fluid(c) || free == c.grains.end()) return;
   const char* keys[] = {"x_low", "x_high", "y_low", "y_high"};
   for (std::size_t face = x_low; face <= y_high; ++face) {
-    if (!lbm::is_open(c.domain.faces[face].type)) continue;
+    const coupling::FaceKeys& open = c.domain.faces[face];
+    const double inwards = (face % 2 == 0 ? 1.0 : -1.0) * open.velocity[static_cast<Eigen::Index>(face / 2)];
+    const bool pushes_away = open.type == lbm::FaceType::velocity_inlet && inwards > 0.0;
+    if (!lbm::is_open(open.type) || pushes_away || has_sink_at(c, face)) continue;
+    const beds::RegionKeys region = region_before(c, face);
     const std::string axis = axis_name[face / 2], own = fmt::format("domain.boundaries.{}", keys[face]);
     throw document.error(
         document.find(own) ? own : "domain.boundaries." + axis,
         fmt::format(
-            "grains cannot come in or leave where the water does, and would jam at this face; give {0}: periodic "
-            "in place of {0}_low and {0}_high, or hold the grains with grains.{1}.fixed: true",
-            axis, free - c.grains.begin()));
+            "grains would jam at this face, through which only the water leaves; give sinks: [{{region: {{lower: "
+            "[{:g}, {:g}, {:g}], upper: [{:g}, {:g}, {:g}]}}}}] or one that is at least half as deep, give {}: "
+            "periodic in place of {}_low and {}_high, or hold the grains with grains.{}.fixed: true",
+            region.lower[0], region.lower[1], region.lower[2], region.upper[0], region.upper[1], region.upper[2], axis,
+            axis, axis, free - c.grains.begin()));
   }
 }
 

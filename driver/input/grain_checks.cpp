@@ -1,10 +1,12 @@
 #include "driver/input/grain_checks.hpp"
 
 #include "beds/packing/packing.hpp"
+#include "beds/supplies.hpp"
 #include "dem/laws/material.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/obstacles.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/case_checks.hpp"
 
 #include <fmt/format.h>
@@ -158,6 +160,23 @@ void check_populations(const Case& c, const io::YamlDocument& document) {
     });
 }
 
+void check_supplies(const Case& c, const io::YamlDocument& document) {
+  const Vec3 box = grain_box(c).size;
+  for (std::size_t n = 0; n < c.supplies.size(); ++n) {
+    const std::string key = fmt::format("supplies.{}", n);
+    at_place(document, key, [&] { check(c.supplies[n], c.grains, box); });
+    if (c.supplies[n].transport_rate && !(unit_mass_rate(c) > 0.0))
+      throw document.error(
+          key + ".transport_rate",
+          "q* has no meaning without a fluid in which the grains are heavier; give rate in grains/s or "
+          "mass_rate in kg/s");
+  }
+  for (std::size_t n = 0; n < c.sinks.size(); ++n)
+    at_place(document, fmt::format("sinks.{}", n), [&] { check(c.sinks[n], box); });
+  if (c.grains.empty() && !c.sinks.empty())
+    throw document.error("sinks", "there are no grains that could leave; give the section grains, or remove this one");
+}
+
 void check_materials(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (c.grains[n].contact)
@@ -188,6 +207,7 @@ void check_grains(const Case& c, const io::YamlDocument& document) {
   check_populations(c, document);
   check_clumps(c, document);
   check_materials(c, document);
+  check_supplies(c, document);
   if (c.grains.empty()) return;
   check_contact_steps(c, document);
   check_lubrication_steps(c, document);

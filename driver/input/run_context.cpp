@@ -84,15 +84,20 @@ analysis::RunContext run_context(const Case& c) {
   return context;
 }
 
-io::PopulationEnds population_ends(const Case& c) {
-  io::PopulationEnds ends;
-  for (const beds::Population& grains : c.grains) ends.push_back((ends.empty() ? 0 : ends.back()) + grains.row_count());
-  return ends;
+io::PopulationIds population_ids(const Case& c) {
+  io::PopulationIds ids;
+  for (const beds::Population& grains : c.grains)
+    ids.ends.push_back((ids.ends.empty() ? 0 : ids.ends.back()) + grains.row_count());
+  for (const beds::SupplyKeys& supply : c.supplies) {
+    const beds::Population& grains = c.grains[static_cast<std::size_t>(supply.population)];
+    ids.supplied.insert(ids.supplied.end(), grains.shape ? grains.shape->clump.size() : 1, supply.population);
+  }
+  return ids;
 }
 
 io::GrainOutputFacts grain_output_facts(const Case& c) {
   io::GrainOutputFacts facts;
-  facts.population_ends = population_ends(c);
+  facts.population_ids = population_ids(c);
   facts.box_size = c.domain.size;
   facts.clumps = std::any_of(c.grains.begin(), c.grains.end(),
                              [](const beds::Population& grains) { return grains.clumps.count > 0; });

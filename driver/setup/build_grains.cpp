@@ -2,6 +2,7 @@
 #include "dem/grain_system.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/setup/build_system.hpp"
+#include "driver/setup/turnover_setup.hpp"
 
 #include <fmt/format.h>
 
@@ -26,6 +27,7 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
   dem::GrainSystemParameters parameters;
   parameters.grains = grain_parameters(c, decomposition.box());
   parameters.gravity = gravity_vector(c.gravity);
+  add_turnover(c, decomposition.box(), parameters.grains);
   parameters.measured_walls = measured_walls(c);
   if (const std::optional<AtRestCase>& rest = c.run.until_at_rest; rest && rest->quantile < 1.0)
     parameters.rest = {rest->largest_speed, rest->largest_acceleration};

@@ -5,6 +5,7 @@
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/fluid_setup.hpp"
+#include "driver/setup/turnover_setup.hpp"
 
 namespace thalweg::driver {
 
@@ -32,6 +33,7 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Decomp
   if (c.system == SystemKind::resolved) {
     dem::GrainParameters grains = grain_parameters(c, decomposition->box());
     grains.body_force = body_force(c);
+    add_turnover(c, decomposition->box(), grains);
     grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
     grains.attached_width = System::attached_width(parameters);
     dem::GrainSeeds seeds;

@@ -105,10 +105,10 @@ void read_header(Hdf5Reader& file, Bed& bed) {
 }  // namespace
 
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot) {
-  const BlockShare share(snapshot.grains.global_count, 1, size_of(communicator));
-  const std::vector<BedRow> rows = rows_by_id(communicator, rows_of(snapshot.grains), share);
+  const std::vector<BedRow> rows = rows_by_id(communicator, rows_of(snapshot.grains),
+                                              BlockShare(snapshot.grains.end_of_ids(), 1, size_of(communicator)));
   const PeriodicBox box = snapshot.decomposition->box();
-  BedWriter writer(communicator, path, share.rows_of(rank_of(communicator)));
+  BedWriter writer(communicator, path, RowRange::of_rows(static_cast<std::int64_t>(rows.size()), communicator));
   writer.archive().attribute("bed/format", format);
   writer.archive().attribute("bed/time", snapshot.time);
   writer.archive().attribute("bed/disk_thickness", snapshot.grains.disk_thickness);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -17,7 +18,11 @@ void describe_selection(SectionVisitor& visit, GrainSelectionKeys& keys) {
   visit.section("box", keys.box, {.meaning = "only grains with their centre in it at the time of the frame"});
 }
 
-std::int64_t population_of(GlobalId id, const PopulationEnds& ends) {
+std::int64_t population_of(GlobalId id, const PopulationIds& populations) {
+  const std::vector<GlobalId>& ends = populations.ends;
+  const GlobalId first_supplied = ends.empty() ? 0 : ends.back();
+  if (id >= first_supplied && !populations.supplied.empty())
+    return populations.supplied[static_cast<std::size_t>(id - first_supplied) % populations.supplied.size()];
   return std::upper_bound(ends.begin(), ends.end(), id) - ends.begin();
 }
 
@@ -37,8 +42,11 @@ void check_shown_box(const BoxKeys& box, const Vec3& domain_size) {
 
 }  // namespace
 
-void check(const GrainSelectionKeys& keys, const PopulationEnds& ends, const Vec3& domain_size) {
-  const std::int64_t grains = ends.empty() ? 0 : ends.back();
+void check(const GrainSelectionKeys& keys, const PopulationIds& ids, const Vec3& domain_size) {
+  const std::vector<GlobalId>& ends = ids.ends;
+  const std::int64_t grains = !ids.supplied.empty() ? std::numeric_limits<std::int64_t>::max()
+                              : ends.empty()        ? 0
+                                                    : ends.back();
   std::unordered_set<std::int64_t> seen;
   for (std::size_t n = 0; n < keys.ids.size(); ++n) {
     if (keys.ids[n] >= grains)
@@ -55,14 +63,14 @@ void check(const GrainSelectionKeys& keys, const PopulationEnds& ends, const Vec
   if (keys.box) check_shown_box(*keys.box, domain_size);
 }
 
-GrainSelection::GrainSelection(GrainSelectionKeys keys, PopulationEnds ends)
-    : keys_(std::move(keys)), ends_(std::move(ends)) {
+GrainSelection::GrainSelection(GrainSelectionKeys keys, PopulationIds populations)
+    : keys_(std::move(keys)), populations_(std::move(populations)) {
   std::sort(keys_.ids.begin(), keys_.ids.end());
 }
 
 bool GrainSelection::has(GlobalId id, const Vec3& position) const {
   if (!keys_.ids.empty() && !std::binary_search(keys_.ids.begin(), keys_.ids.end(), id)) return false;
-  if (keys_.population && population_of(id, ends_) != *keys_.population) return false;
+  if (keys_.population && population_of(id, populations_) != *keys_.population) return false;
   return !keys_.box ||
          ((keys_.box->lower.array() <= position.array()).all() && (position.array() <= keys_.box->upper.array()).all());
 }

@@ -20,19 +20,23 @@ struct GrainSelectionKeys {
 };
 void describe_selection(SectionVisitor& visit, GrainSelectionKeys& keys);
 
-// The populations of a case, whose grains have consecutive ids: for each, the id after its last one.
-using PopulationEnds = std::vector<GlobalId>;
+// The ids of the populations of a case. Those of the grains at the start are consecutive; those that come in later are
+// in rounds (dem/supply/turnover.hpp).
+struct PopulationIds {
+  std::vector<GlobalId> ends;          // of each population, the id after its last one at the start
+  std::vector<std::int64_t> supplied;  // the population of each id of a round; empty: none comes in
+};
 
 // The number of the population that a grain belongs to.
-std::int64_t population_of(GlobalId id, const PopulationEnds& ends);
+std::int64_t population_of(GlobalId id, const PopulationIds& populations);
 
 // Throws KeyError where there is no such grain or population, the box is empty, or it reaches out of a domain of this
 // size (m).
-void check(const GrainSelectionKeys& keys, const PopulationEnds& ends, const Vec3& domain_size);
+void check(const GrainSelectionKeys& keys, const PopulationIds& ids, const Vec3& domain_size);
 
 class GrainSelection {
 public:
-  GrainSelection(GrainSelectionKeys keys, PopulationEnds ends);
+  GrainSelection(GrainSelectionKeys keys, PopulationIds populations);
 
   // True if the grain with this id and centre (m) is shown.
   bool has(GlobalId id, const Vec3& position) const;
@@ -41,7 +45,7 @@ public:
 
 private:
   GrainSelectionKeys keys_;  // ids in their order
-  PopulationEnds ends_;
+  PopulationIds populations_;
 };
 
 }  // namespace thalweg::io

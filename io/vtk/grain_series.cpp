@@ -33,7 +33,7 @@ void copy(const Mat3& from, double* to) {
   for (int k = 0; k < 9; ++k) to[k] = from(k / 3, k % 3);
 }
 
-Row row_of(const GrainView& grains, std::size_t n, const PopulationEnds& ends) {
+Row row_of(const GrainView& grains, std::size_t n, const PopulationIds& ends) {
   Row row{};
   row.id = grains.id[n];
   row.clump = grains.is_member(n) ? grains.clump[n] : -1;
@@ -57,7 +57,7 @@ bool contains(const std::vector<GrainField>& fields, GrainField field) {
   return std::find(fields.begin(), fields.end(), field) != fields.end();
 }
 
-std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& selection, const PopulationEnds& ends,
+std::vector<Row> selected_rows(const Snapshot& snapshot, const GrainSelection& selection, const PopulationIds& ends,
                                bool with_contact_stress) {
   const GrainView& grains = snapshot.grains;
   const std::vector<Mat3> stress = with_contact_stress ? contact_stresses(snapshot) : std::vector<Mat3>{};
@@ -151,14 +151,14 @@ void add_field(GrainField field, const std::string& name, const Columns& columns
 }  // namespace
 
 GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
-                         GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationEnds population_ends,
+                         GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationIds population_ids,
                          std::optional<double> continue_from)
     : communicator_(communicator),
       folder_(folder),
       name_(std::move(name)),
-      selection_(std::move(selection), population_ends),
+      selection_(std::move(selection), population_ids),
       fields_(std::move(fields)),
-      population_ends_(std::move(population_ends)),
+      population_ids_(std::move(population_ids)),
       index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
 // Fields in the order of the arrays.
@@ -182,8 +182,8 @@ void GrainSeries::write(const Snapshot& snapshot) {
   });
   // Rows by id, of which some may be missing, then by their place in the file.
   std::vector<Row> selected =
-      rows_by_id(communicator_, selected_rows(snapshot, selection_, population_ends_, with_contact_stress),
-                 BlockShare(snapshot.grains.global_count, 1, size_of(communicator_)));
+      rows_by_id(communicator_, selected_rows(snapshot, selection_, population_ids_, with_contact_stress),
+                 BlockShare(snapshot.grains.end_of_ids(), 1, size_of(communicator_)));
   const RowRange places = RowRange::of_rows(static_cast<std::int64_t>(selected.size()), communicator_);
   VtkXmlFile picture(communicator_, places.count);
   const std::vector<Row> rows = rows_by_place(communicator_, std::move(selected), places.first, picture.share());

@@ -25,7 +25,7 @@ public:
   // fields: empty: all there are. continue_from: simulated time (s) at which a restarted run takes up an existing
   // series; later frames are removed. Empty: a new series.
   GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
-              GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationEnds population_ends,
+              GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationIds population_ids,
               std::optional<double> continue_from = std::nullopt);
 
   void write(const Snapshot& snapshot);
@@ -41,7 +41,7 @@ private:
   std::string name_;
   GrainSelection selection_;
   std::vector<GrainField> fields_;
-  PopulationEnds population_ends_;
+  PopulationIds population_ids_;
   PvdIndex index_;
 };
 

@@ -127,7 +127,7 @@ void check_grain_output(const OutputKeys& output, const GrainOutputFacts& facts)
   for (std::size_t n = 0; n < output.grain_parts.size(); ++n)
     check_in(fmt::format("grain_parts.{}", n), [&] {
       check_fields(output.grain_parts[n].fields, facts);
-      check(output.grain_parts[n], facts.population_ends, facts.box_size);
+      check(output.grain_parts[n], facts.population_ids, facts.box_size);
     });
 }
 

@@ -64,7 +64,7 @@ void check_fluid_output(const OutputKeys& output, const Vec3& box_size, double s
 
 // Properties of the grains of a case that output can show and select.
 struct GrainOutputFacts : GrainFieldFacts {
-  PopulationEnds population_ends;
+  PopulationIds population_ids;
   Vec3 box_size = Vec3::Zero();  // m
 };
 

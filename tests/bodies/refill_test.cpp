@@ -36,7 +36,8 @@ RefillTotals move_sphere(lbm::Fluid<double>& fluid, const Decomposition& decompo
   map.remap(slot, body.centre);
   const std::vector<CellChange> changes = map.settle();
   std::vector<LinkBody> bodies{body};
-  return Refill(decomposition, communicator).fill(fluid, changes, rest, bodies);
+  const std::vector<double> surrounding(1, 0.0);
+  return Refill(decomposition, communicator).fill(fluid, changes, rest, surrounding, bodies);
 }
 
 LinkBody body_at(const Vec3& centre) {

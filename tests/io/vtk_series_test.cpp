@@ -21,7 +21,7 @@ using testing::ScratchFolder;
 constexpr Index3 cells{24, 20, 18};  // more than the two blocks of a file
 constexpr double spacing = 0.25e-3;  // m
 constexpr std::int64_t grain_count = 9001;
-const PopulationEnds ends{4000, grain_count};
+const PopulationIds ends{{4000, grain_count}, {}};
 
 // Fields that tell every cell apart; check_vtk_series.py computes the same.
 class CellNumbers final : public FluidSource {
@@ -317,8 +317,9 @@ TEST(VtkSeries, AFolderThatCannotBeWrittenIsARunErrorOnEveryRank) {
   const CellNumbers fluid(decomposition.block_of(rank_of(MPI_COMM_WORLD)), 0.0);
   const Grains grains(0.0);
   const Snapshot snapshot{0.0, 0, &decomposition, grains.view(true), &fluid};
-  EXPECT_NE(message_of<RunError>(
-                [&] { GrainSeries(MPI_COMM_WORLD, folder.path(), "grains", {}, {}, {grain_count}).write(snapshot); }),
+  EXPECT_NE(message_of<RunError>([&] {
+              GrainSeries(MPI_COMM_WORLD, folder.path(), "grains", {}, {}, {{grain_count}, {}}).write(snapshot);
+            }),
             "");
   EXPECT_NE(message_of<RunError>([&] {
               FluidSeries(MPI_COMM_WORLD, folder.path(), "fluid", {}, {FluidField::pressure}, FieldPrecision::single)

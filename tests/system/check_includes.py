@@ -39,7 +39,7 @@ ROOMS = {
     "core": ("base", "geometry", "keys", "parallel", "state", "sums"),
     "lbm": ("lattice", "collision", "walls", "fluid"),
     "bodies": ("map", "links"),
-    "dem": ("laws", "motion", "clumps", "contact", "ranks"),
+    "dem": ("laws", "motion", "clumps", "contact", "ranks", "supply"),
     "beds": ("packing", "sizes", "shapes", "population", "files"),
     "model_fluid": (),
     "coupling": ("loads", "keys", "system"),

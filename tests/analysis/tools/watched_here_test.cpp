@@ -27,7 +27,7 @@ TEST(DistributionById, AnswersInTheOrderOfTheQuestions) {
   const DistributionById homes(world, count);
   const std::vector<GlobalId> ids = ids_here(3);
   const std::vector<double> answers = homes.ask(ids, [&](GlobalId id) {
-    EXPECT_GE(id, homes.begin());
+    EXPECT_EQ(homes.home_of(id), rank_of(MPI_COMM_WORLD));
     EXPECT_LT(homes.location_of(id), homes.size());
     return 0.5 * static_cast<double>(id);
   });

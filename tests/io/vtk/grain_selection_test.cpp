@@ -10,7 +10,7 @@
 namespace thalweg::io::grain_selection_test {
 namespace {
 
-const PopulationEnds ends{10, 10, 25};  // the second population has no grains
+const PopulationIds ends{{10, 10, 25}, {}};  // the second population has no grains
 const Vec3 domain(0.1, 0.05, 0.02), middle(0.05, 0.025, 0.01);
 
 TEST(GrainSelection, FindsThePopulationOfAGrain) {
@@ -84,6 +84,15 @@ TEST(GrainSelection, FieldsAreThoseTheCaseHas) {
   facts.clumps = facts.fluid_force = facts.fluid_stress = true;
   for (const NamedChoice<GrainField>& field : grain_fields())
     EXPECT_EQ(refusal(part_of({}, {field.value}), facts), "") << field.name;
+}
+
+// A round of supplies brings a grain of population 2, then a clump of two members of population 0.
+TEST(GrainSelection, KnowsThePopulationOfGrainsThatHaveComeIn) {
+  const PopulationIds with_supplies{{10, 10, 25}, {2, 0, 0}};
+  const std::vector<std::pair<GlobalId, std::int64_t>> known{{9, 0},  {10, 2}, {24, 2}, {25, 2},
+                                                             {26, 0}, {27, 0}, {28, 2}, {25 + 3 * 1000 + 1, 0}};
+  for (const auto& [id, population] : known) EXPECT_EQ(population_of(id, with_supplies), population) << id;
+  EXPECT_EQ(population_of(7, {{}, {1}}), 1);
 }
 
 // Grain 0 is a sphere of 2 mm with 1 mg; 1 and 2 are the members of a clump.

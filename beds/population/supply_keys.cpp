@@ -1,0 +1,50 @@
+#include "beds/population/supply_keys.hpp"
+
+namespace thalweg::beds {
+
+// Where grains come in, and how fast.
+static void describe_entrance(SectionVisitor& visit, RegionKeys& region, std::optional<Vec3>& velocity,
+                              std::int64_t& seed) {
+  visit.section(
+      "region", region,
+      {.meaning = "where they come in: their centres, each at a random free place; where none is free they wait",
+       .required = true});
+  visit.vec3("velocity", velocity,
+             {.unit = "m/s",
+              .meaning = "with which they come in; default: that of the fluid there, else zero",
+              .example = 0.0});
+  visit.integer("seed", seed, {.meaning = "seed of the random places", .at_least = 0});
+}
+
+void describe(SectionVisitor& visit, SupplyKeys& supply) {
+  visit.integer("population", supply.population,
+                {.meaning = "number of the population, in grains, that they are like: sizes, shape, density, contact",
+                 .at_least = 0});
+  visit.real("rate", supply.rate, {.unit = "1/s", .meaning = "grains a second", .above = 0.0, .example = 20.0});
+  visit.real("mass_rate", supply.mass_rate,
+             {.unit = "kg/s", .meaning = "in place of rate", .above = 0.0, .example = 1e-3});
+  visit.real("transport_rate", supply.transport_rate,
+             {.meaning = "q* over the width of the box, in place of rate", .above = 0.0, .example = 0.1});
+  visit.require(supply.rate.has_value() + supply.mass_rate.has_value() + supply.transport_rate.has_value() == 1, "rate",
+                "give one of rate in grains/s, mass_rate in kg/s and transport_rate, which is q*");
+  visit.real("from", supply.from, {.unit = "s", .meaning = "time of the beginning", .at_least = 0.0});
+  visit.real("until", supply.until,
+             {.unit = "s", .meaning = "time of the end; default: that of the run", .above = 0.0, .example = 10.0});
+  visit.require(!supply.until || *supply.until > supply.from, "until",
+                "the supply ends before it begins; give a time in s after from");
+  describe_entrance(visit, supply.region, supply.velocity, supply.seed);
+}
+
+static void describe(SectionVisitor& visit, RecirculationKeys& recirculation) {
+  visit.real("delay", recirculation.delay, {.unit = "s", .meaning = "until they come in again", .at_least = 0.0});
+  describe_entrance(visit, recirculation.region, recirculation.velocity, recirculation.seed);
+}
+
+void describe(SectionVisitor& visit, SinkKeys& sink) {
+  visit.section("region", sink.region,
+                {.meaning = "every free grain whose centre enters it leaves the box", .required = true});
+  visit.section("recirculation", sink.recirculation,
+                {.meaning = "they come in again elsewhere; default: they are gone"});
+}
+
+}  // namespace thalweg::beds

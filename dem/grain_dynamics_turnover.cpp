@@ -1,0 +1,145 @@
+// Grains that come into the box and leave it (dem/supply): the part of GrainDynamics that changes who is there.
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+#include "dem/grain_dynamics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace thalweg::dem {
+
+bool GrainDynamics::turn_over(const std::function<Vec3(const Vec3&)>& fluid_velocity) {
+  if (!turnover_.any()) return false;
+  const auto scope = timer_.measure(lists_phase_);
+  wrap_positions();
+  // What leaves now comes in again in the next step at the earliest, so that everyone sees it gone.
+  const std::vector<PlaceSeeker> seekers = turnover_.due(time());
+  const std::vector<int> sink = sink_of_slots();
+  const bool some_leave = any_rank(communicator_, std::any_of(sink.begin(), sink.end(), [](int s) { return s >= 0; }));
+  std::vector<TravellingBody> leaving;
+  if (some_leave) leaving = take_leaving(sink);
+  for (const TravellingBody& body : leaving) {
+    const Vec3 centre =
+        body.clump ? Vec3(body.clump->centre) : Vec3(body.rows.front().value[GrainRow::position].data());
+    turnover_.leave(body, static_cast<std::size_t>(turnover_.sink_at(centre)), time());
+  }
+
+  std::vector<TravellingBody> arriving;
+  std::vector<const Entrance*> by;
+  if (!seekers.empty()) {
+    std::vector<char> gone(store_.owned);
+    std::transform(sink.begin(), sink.end(), gone.begin(), [](int s) { return static_cast<char>(s >= 0); });
+    const std::vector<std::optional<Vec3>> places =
+        free_places(seekers, store_, gone, {box_, planes_, solids_, parameters_.solids},
+                    static_cast<std::uint64_t>(steps_done_), communicator_);
+    turnover_.enter(seekers, places);
+    for (std::size_t n = 0; n < seekers.size(); ++n) {
+      if (!places[n]) continue;
+      arriving.push_back(seekers[n].body);
+      arriving.back().enter(*places[n], Vec3::Zero(), box_);
+      by.push_back(seekers[n].entrance);
+    }
+  }
+  if (leaving.empty() && arriving.empty()) return false;
+  exchange_bodies(leaving, arriving, fluid_velocity, by);
+  return true;
+}
+
+// The sink that each owned grain is in, of a clump's member that of its clump; -1: it stays.
+std::vector<int> GrainDynamics::sink_of_slots() const {
+  std::vector<int> sink(store_.owned, -1);
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (store_.clump[s] < 0 && !holds_translation(store_.motion[s])) sink[s] = turnover_.sink_at(store_.position[s]);
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    if (!holds_translation(clumps_[n].motion))
+      std::fill_n(sink.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)), clumps_.member_count(n),
+                  turnover_.sink_at(clumps_[n].centre));
+  return sink;
+}
+
+// The bodies of all ranks that leave, in order of id. Collective.
+std::vector<TravellingBody> GrainDynamics::take_leaving(const std::vector<int>& sink) const {
+  const GrainBatch all = owned_grains(store_);
+  std::vector<GrainRow> rows;
+  std::vector<ClumpRow> clumps;
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    if (sink[s] >= 0) rows.push_back(all.rows[s]);
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    if (sink[clumps_.first_slot(n)] >= 0) clumps.push_back(row_of(clumps_[n]));
+  return gathered_bodies(std::move(rows), std::move(clumps), communicator_);
+}
+
+// Takes bodies out of the store and puts others in, each on the rank of its centre; by: the entrance of each.
+void GrainDynamics::exchange_bodies(std::span<const TravellingBody> leaving, std::span<const TravellingBody> arriving,
+                                    const std::function<Vec3(const Vec3&)>& fluid_velocity,
+                                    std::span<const Entrance* const> by) {
+  ContactHistories histories = histories_of(list_, store_, planes_.size());
+  std::vector<GlobalId> gone;  // ascending
+  for (const TravellingBody& body : leaving)
+    for (const GrainRow& row : body.rows) gone.push_back(row.id);
+  const auto is_gone = [&gone](GlobalId id) { return std::binary_search(gone.begin(), gone.end(), id); };
+
+  const auto width = static_cast<std::size_t>(store_.attached_width);
+  const GrainBatch before = owned_grains(store_);
+  GrainBatch batch;
+  for (std::size_t s = 0; s < before.rows.size(); ++s) {
+    if (is_gone(before.rows[s].id)) continue;
+    batch.rows.push_back(before.rows[s]);
+    const auto first = before.attached.begin() + static_cast<std::ptrdiff_t>(s * width);
+    batch.attached.insert(batch.attached.end(), first, first + static_cast<std::ptrdiff_t>(width));
+  }
+  std::vector<Clump> clumps;
+  for (std::size_t n = 0; n < clumps_.size(); ++n)
+    if (!is_gone(clumps_[n].id)) clumps.push_back(clumps_[n]);
+
+  for (std::size_t n = 0; n < arriving.size(); ++n) {
+    TravellingBody body = arriving[n];
+    const Vec3 centre =
+        body.clump ? Vec3(body.clump->centre) : Vec3(body.rows.front().value[GrainRow::position].data());
+    if (decomposition_.owner_of(centre) != rank_of(communicator_)) continue;
+    const Vec3 velocity = by[n]->velocity  ? *by[n]->velocity
+                          : fluid_velocity ? fluid_velocity(centre)
+                                           : Vec3(Vec3::Zero());
+    body.enter(centre, velocity, box_);
+    batch.rows.insert(batch.rows.end(), body.rows.begin(), body.rows.end());
+    batch.attached.resize(batch.rows.size() * width, 0.0);
+    if (body.clump) clumps.push_back(clump_of(*body.clump));
+  }
+  sort_by_id(batch, store_.attached_width);
+  std::sort(clumps.begin(), clumps.end(), [](const Clump& a, const Clump& b) { return a.id < b.id; });
+
+  std::int64_t rows = 0, members = 0, clump_change = 0;
+  const auto count = [&](std::span<const TravellingBody> bodies, int sign) {
+    for (const TravellingBody& body : bodies) {
+      const auto rows_of_body = static_cast<std::int64_t>(body.rows.size());
+      rows += sign * rows_of_body;
+      if (body.clump) members += sign * rows_of_body, clump_change += sign;
+    }
+  };
+  count(arriving, 1);
+  count(leaving, -1);
+  global_count_ += rows;
+  member_count_ += members;
+  clump_count_ += clump_change;
+
+  replace_owned(store_, batch);
+  clumps_.replace(std::move(clumps));
+  clumps_.find_members(store_);
+  rebuild_with(std::move(histories));
+  const std::int64_t here = sum_over_ranks(communicator_, static_cast<std::int64_t>(store_.owned));
+  if (here != global_count_)
+    throw RunError(
+        fmt::format("There are {} grains and members of clumps in the box, but {} by the balance of supplies "
+                    "and sinks; this is a fault of the program.",
+                    here, global_count_));
+}
+
+std::vector<Diagnostic> GrainDynamics::turnover_diagnostics() const {
+  if (!turnover_.any()) return {};
+  std::vector<Diagnostic> diagnostics{{"grains", "1", static_cast<double>(body_count())}};
+  for (const Diagnostic& diagnostic : turnover_.diagnostics(time())) diagnostics.push_back(diagnostic);
+  return diagnostics;
+}
+
+}  // namespace thalweg::dem

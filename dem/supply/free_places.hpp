@@ -1,0 +1,49 @@
+// Places where bodies that come in touch nothing.
+//
+// Every rank draws the same random points for a body and says which of them its own grains block; among bodies that
+// come in together the earlier has the place. So all ranks find the same places, on any number of ranks.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "core/geometry/periodic_box.hpp"
+#include "dem/contact/solid.hpp"
+#include "dem/motion/grain_store.hpp"
+#include "dem/motion/walls.hpp"
+#include "dem/supply/supply.hpp"
+#include "dem/supply/travelling_body.hpp"
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace thalweg::dem {
+
+// Surroundings of the places, where they are now.
+struct PlaceSurroundings {
+  PeriodicBox box;
+  std::span<const Plane> walls;
+  std::span<const PlacedSolid> placed_solids;
+  std::span<const Solid> solids;
+};
+
+// A body that seeks a place.
+struct PlaceSeeker {
+  TravellingBody body;
+  const Entrance* entrance;
+  // Bodies in one queue come in one after the other: where one finds no place, those behind it wait, too.
+  int queue;
+};
+
+// Points of its entrance that a body tries in one step.
+inline constexpr int places_tried = 16;
+
+// For each seeker a place (m) for its centre; none: it must wait. store: the grains of this rank, without those that
+// leave (leaving[slot] != 0). draw: makes the random points of this step others than those of other steps. Collective.
+std::vector<std::optional<Vec3>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
+                                             std::span<const char> leaving, const PlaceSurroundings& surroundings,
+                                             std::uint64_t draw, MPI_Comm communicator);
+
+}  // namespace thalweg::dem

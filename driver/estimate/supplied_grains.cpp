@@ -1,0 +1,37 @@
+#include "driver/estimate/supplied_grains.hpp"
+
+#include "beds/supplies.hpp"
+#include "driver/estimate/reference_grain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+double unit_mass_rate(const Case& c) {
+  if (!has_fluid(c) || c.grains.empty()) return 0.0;
+  const ReferenceGrain grain = reference_grain(c);
+  const double weight = std::abs(grain.density / c.fluid.density - 1.0) * gravity_vector(c.gravity).norm();
+  return grain.density * std::sqrt(weight * grain.diameter) * grain.diameter * c.domain.size.y();
+}
+
+double grains_per_second(const Case& c, const beds::SupplyKeys& supply) {
+  if (supply.rate) return *supply.rate;
+  const double mass_rate = supply.mass_rate ? *supply.mass_rate : *supply.transport_rate * unit_mass_rate(c);
+  return mass_rate / beds::mean_mass(c.grains[static_cast<std::size_t>(supply.population)]);
+}
+
+std::int64_t most_rows(const Case& c) {
+  const std::int64_t at_start = grain_rows(c);
+  double supplied = 0.0;
+  for (const beds::SupplyKeys& supply : c.supplies) {
+    const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];
+    const double rows = population.shape ? static_cast<double>(population.shape->clump.size()) : 1.0;
+    const double until = std::min(c.run.until, supply.until.value_or(c.run.until));
+    supplied += rows * grains_per_second(c, supply) * std::max(0.0, until - supply.from);
+  }
+  if (!c.sinks.empty()) supplied = std::min(supplied, static_cast<double>(at_start));
+  return at_start + static_cast<std::int64_t>(std::min(supplied, 1e15));
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,20 @@
+// Grains that come in during a run, as far as they can be known before it.
+#pragma once
+
+#include "driver/case/case.hpp"
+
+#include <cstdint>
+
+namespace thalweg::driver {
+
+// kg/s, of a transport rate q* of 1 over the width of the box; 0 where q* has no meaning.
+double unit_mass_rate(const Case& c);
+
+// Grains/s of a supply, in the mean.
+double grains_per_second(const Case& c, const beds::SupplyKeys& supply);
+
+// Rows (grains, and members of clumps) that the box may hold at once: those of the start and all that are supplied, or,
+// where there are sinks, at most twice those of the start.
+std::int64_t most_rows(const Case& c);
+
+}  // namespace thalweg::driver

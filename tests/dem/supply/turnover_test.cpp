@@ -1,0 +1,272 @@
+// Supplies and sinks: when grains come and go, that nothing is lost, and the same bits on any number of ranks.
+#include "core/parallel/ranks.hpp"
+#include "tests/dem/clump_cases.hpp"
+#include "tests/support/memory_archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace thalweg::dem::turnover_test {
+namespace {
+
+constexpr double small = 1.5e-3, large = 2.5e-3;  // m, radii
+
+Decomposition box_on(int ranks) {
+  const Index3 cells{16, 8, 16};
+  return Decomposition(cells, 2.5e-3, {true, true, false}, Decomposition::best_layout(cells, ranks));
+}
+
+// Spheres that are small and large in turn, which come down in the middle.
+Supply spheres(double rate) {
+  Supply supply;
+  supply.entrance = {{Vec3(0.012, 0.004, 0.025), Vec3(0.028, 0.016, 0.036)}, Vec3(0.3, 0.1, -0.5), 3};
+  supply.rate = rate;
+  supply.make = [](std::int64_t n) {
+    return GrainSeeds{{test::glass_sphere(0, Vec3::Zero(), Vec3::Zero(), n % 2 == 0 ? small : large)}, {}};
+  };
+  return supply;
+}
+
+Supply clumps(double mass_rate) {
+  Supply supply = spheres(mass_rate);
+  supply.entrance.seed = 4;
+  supply.by_mass = true;
+  const std::shared_ptr<const ClumpShape> shape = test::pebble();
+  supply.members = static_cast<int>(shape->members.size());
+  supply.make = [shape](std::int64_t n) {
+    ClumpSeed clump = test::glass_clump(0, shape, Vec3::Zero());
+    clump.orientation = test::some_orientation(static_cast<int>(n));
+    return GrainSeeds{{}, {clump}};
+  };
+  return supply;
+}
+
+constexpr double clump_mass_rate = 0.02;  // kg/s
+
+GrainParameters parameters() {
+  GrainParameters p;
+  p.contact = test::glass(0.5);
+  p.contact.normal_stiffness = 500.0;  // so that a step of 25 us is short enough
+  p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
+  p.walls = face_planes(box_on(1).box(), p.contact);
+  p.body_force = [](double mass, double) { return Vec3(mass * Vec3(2.0, 0.0, -15.0)); };
+  p.time_step = 2.5e-5;
+  p.sub_steps = 10;
+  p.skin = 1e-3;
+  p.ghost_width = 3e-3;
+  p.attached_width = 1;
+  return p;
+}
+
+// A box with two supplies, a sink on the left of its floor, and one on the right whose grains come back.
+GrainParameters busy_box() {
+  GrainParameters p = parameters();
+  p.supplies = {spheres(900.0), clumps(clump_mass_rate)};
+  Sink gone, back;
+  gone.zone = {Vec3::Zero(), Vec3(0.012, 0.02, 0.006)};
+  back.zone = {Vec3(0.03, 0.0, 0.0), Vec3(0.04, 0.02, 0.006)};
+  back.recirculation = {{{Vec3(0.002, 0.0, 0.03), Vec3(0.038, 0.02, 0.038)}, std::nullopt, 5}, 0.05};
+  p.sinks = {gone, back};
+  return p;
+}
+
+// A large sphere, a small one and a clump, of the kinds that are supplied.
+GrainSeeds few_at_start() {
+  return {{test::glass_sphere(0, Vec3(0.02, 0.01, 0.004), Vec3::Zero(), large),
+           test::glass_sphere(1, Vec3(0.01, 0.01, 0.004), Vec3::Zero(), small)},
+          {test::glass_clump(2, test::pebble(), Vec3(0.03, 0.01, 0.01))}};
+}
+constexpr std::int64_t bodies_at_start = 3;
+constexpr GlobalId ids_at_start = 5, ids_a_round = 4;
+
+bool step(GrainDynamics& grains) {
+  const bool changed = grains.turn_over();
+  grains.prepare();
+  grains.advance(grains.parameters().sub_steps);
+  grains.refresh_ghosts();
+  return changed;
+}
+
+void run(GrainDynamics& grains, int steps) {
+  for (int n = 0; n < steps; ++n) step(grains);
+}
+
+double diagnostic(const GrainDynamics& grains, const std::string& name) {
+  for (const Diagnostic& one : grains.turnover_diagnostics())
+    if (one.name == name) return one.value;
+  ADD_FAILURE() << "no diagnostic " << name;
+  return 0.0;
+}
+
+thalweg::test::MemoryArchive saved(const GrainDynamics& grains, MPI_Comm communicator) {
+  thalweg::test::MemoryArchive archive;
+  thalweg::test::MemoryWriter writer(archive, communicator);
+  grains.save(writer);
+  return archive;
+}
+
+std::vector<GlobalId> all_ids(const GrainDynamics& grains) {
+  const GrainStore& store = grains.store();
+  return Ranks(MPI_COMM_WORLD)
+      .gathered(std::vector<GlobalId>(store.id.begin(), store.id.begin() + static_cast<std::ptrdiff_t>(store.owned)));
+}
+
+TEST(Turnover, SameBitsOnAnyRanksAndAfterARestart) {
+  const GrainParameters p = busy_box();
+  const int steps = 600;
+  GrainDynamics alone(box_on(1), MPI_COMM_SELF, p, few_at_start());
+  run(alone, steps / 2);
+  const thalweg::test::MemoryArchive half = saved(alone, MPI_COMM_SELF);
+  run(alone, steps / 2);
+  const thalweg::test::MemoryArchive reference = saved(alone, MPI_COMM_SELF);
+  // Worth comparing: grains of both kinds have gone for good and come back, and some are on their way at the restart.
+  EXPECT_GT(diagnostic(alone, "left_grains"), 10.0);
+  EXPECT_GT(diagnostic(alone, "recirculated_grains"), 10.0);
+  EXPECT_TRUE(half.datasets.contains("grains/returning/due"));
+  EXPECT_TRUE(half.datasets.contains("grains/returning/clump_id"));
+
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start());
+  run(grains, steps / 2);
+  EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), half), "");
+  run(grains, steps / 2);
+  EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), reference), "");
+
+  GrainDynamics restarted(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, GrainSeeds{});
+  thalweg::test::MemoryReader reader(half);
+  restarted.load(reader);
+  EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "");
+  run(restarted, steps / 2);
+  EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), reference), "");
+}
+
+TEST(Turnover, EveryGrainIsAccountedFor) {
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, busy_box(), few_at_start());
+  std::set<GlobalId> seen;
+  for (int n = 0; n < 300; ++n) {
+    const double left_before = diagnostic(grains, "left_grains");
+    step(grains);
+    ASSERT_GE(diagnostic(grains, "left_grains"), left_before);
+    ASSERT_EQ(
+        bodies_at_start + diagnostic(grains, "supplied_grains"),
+        diagnostic(grains, "grains") + diagnostic(grains, "left_grains") + diagnostic(grains, "returning_grains"));
+    const std::vector<GlobalId> ids = all_ids(grains);
+    ASSERT_EQ(std::set<GlobalId>(ids.begin(), ids.end()).size(), ids.size());
+    for (const GlobalId id : ids) ASSERT_LT(id, grains.id_limit());
+    seen.insert(ids.begin(), ids.end());
+  }
+  // The ids of a round are those of a sphere and of a clump of three.
+  std::int64_t supplied_spheres = 0, members = 0;
+  for (const GlobalId id : seen)
+    if (id >= ids_at_start) ++((id - ids_at_start) % ids_a_round == 0 ? supplied_spheres : members);
+  EXPECT_EQ(static_cast<double>(supplied_spheres + members / 3), diagnostic(grains, "supplied_grains"));
+  EXPECT_EQ(members % 3, 0);
+}
+
+// The spheres due by t are floor(rate t). Of the supply by mass the next clump would exceed what is due.
+TEST(Turnover, SuppliesBringWhatIsDue) {
+  GrainParameters p = parameters();
+  p.supplies = {spheres(200.0), clumps(clump_mass_rate)};
+  p.supplies[0].from = 0.0105;
+  p.supplies[0].until = 0.0805;
+  Sink everywhere;  // below the entrance: none gathers
+  everywhere.zone = {Vec3::Zero(), Vec3(0.04, 0.02, 0.015)};
+  p.sinks = {everywhere};
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start());
+  const double sphere_mass = 4.0 / 3.0 * M_PI * test::glass_density * (std::pow(small, 3) + std::pow(large, 3)) / 2.0;
+  const double clump_mass = test::glass_density * test::pebble()->volume;
+  for (int n = 0; n < 500; ++n) {
+    const double time = grains.time();
+    step(grains);
+    const double due = std::floor(200.0 * (std::min(time, 0.0805) - 0.0105) + 1e-6);
+    const double due_spheres = std::max(0.0, due), due_clumps = std::floor(clump_mass_rate * time / clump_mass + 1e-6);
+    ASSERT_EQ(diagnostic(grains, "supplied_grains"), due_spheres + due_clumps) << time;
+    const double odd = static_cast<std::int64_t>(due_spheres) % 2 == 1 ? std::pow(small, 3) - std::pow(large, 3) : 0.0;
+    const double mass =
+        due_spheres * sphere_mass + due_clumps * clump_mass + 2.0 / 3.0 * M_PI * test::glass_density * odd;
+    ASSERT_NEAR(diagnostic(grains, "supplied_mass"), mass, 1e-12 * (mass + 1e-9));
+  }
+  EXPECT_EQ(grains.body_count(), static_cast<std::int64_t>(diagnostic(grains, "grains")));
+  EXPECT_GT(diagnostic(grains, "left_grains"), 30.0);
+}
+
+// Without gravity nothing moves: the box fills up until no place is free, and no two grains touch.
+TEST(Turnover, GrainsWaitForAFreePlace) {
+  GrainParameters p = parameters();
+  p.body_force = {};
+  p.supplies = {spheres(4000.0), clumps(0.2)};
+  for (Supply& supply : p.supplies) supply.entrance.velocity = Vec3::Zero();
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start());
+  run(grains, 400);
+  EXPECT_EQ(grains.largest_overlap(), 0.0);
+  EXPECT_EQ(grains.contact_count(), 0);
+  EXPECT_GT(grains.body_count(), 20);
+  EXPECT_LT(diagnostic(grains, "supplied_grains"), 150.0);
+  EXPECT_GT(diagnostic(grains, "supply_lag"), 0.05);
+  EXPECT_LE(diagnostic(grains, "supply_lag"), grains.time());
+  const GrainStore& store = grains.store();
+  for (std::size_t s = 0; s < store.owned; ++s) EXPECT_GE(store.position[s].z(), store.radius[s]);
+}
+
+// A sphere and a clump fall into a sink and come in again after the delay, with the ids and sizes they had, at rest.
+TEST(Turnover, GrainsComeBackAsTheyWere) {
+  GrainParameters p = parameters();
+  Sink back;
+  back.zone = {Vec3::Zero(), Vec3(0.04, 0.02, 0.008)};
+  back.recirculation = {{{Vec3(0.005, 0.005, 0.03), Vec3(0.035, 0.015, 0.03)}, std::nullopt, 1}, 0.05};
+  p.sinks = {back};
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p,
+                       {{test::glass_sphere(0, Vec3(0.02, 0.01, 0.012), Vec3::Zero(), large)},
+                        {test::glass_clump(1, test::pebble(), Vec3(0.03, 0.01, 0.012), Vec3::Zero(), Vec3(0, 30, 0))}});
+  const double mass = 4.0 / 3.0 * M_PI * test::glass_density * std::pow(large, 3);
+  double left_at = -1.0;
+  int came_back = 0;
+  for (int n = 0; n < 400 && came_back == 0; ++n) {
+    const double time = grains.time();
+    const std::int64_t before = grains.body_count();
+    grains.turn_over();
+    if (grains.body_count() < 2 && left_at < 0.0) left_at = time;
+    if (grains.body_count() > before) {
+      ++came_back;
+      EXPECT_GE(time, left_at + 0.05 - 1e-9);
+      EXPECT_LE(time, left_at + 0.05 + 2.5e-4);
+      const GrainStore& store = grains.store();
+      for (std::size_t s = 0; s < store.owned; ++s) {
+        EXPECT_EQ(store.velocity[s], Vec3::Zero());
+        EXPECT_EQ(store.angular_velocity[s], Vec3::Zero());
+        if (store.clump[s] >= 0) continue;
+        EXPECT_EQ(store.position[s].z(), 0.03);
+        EXPECT_NEAR(store.mass[s], mass, 1e-12 * mass);
+      }
+      for (std::size_t c = 0; c < grains.clumps().size(); ++c) EXPECT_EQ(grains.clumps()[c].centre.z(), 0.03);
+    }
+    grains.prepare();
+    grains.advance(grains.parameters().sub_steps);
+    grains.refresh_ghosts();
+  }
+  EXPECT_EQ(came_back, 1);
+  run(grains, 40);
+  EXPECT_EQ(grains.body_count(), 2);
+  const std::vector<GlobalId> ids = all_ids(grains);
+  EXPECT_EQ(std::set<GlobalId>(ids.begin(), ids.end()), (std::set<GlobalId>{0, 1, 2, 3}));
+  EXPECT_EQ(grains.member_count(), 3);
+}
+
+TEST(Turnover, ImpossibleSuppliesAreRefused) {
+  const auto refused = [](const GrainParameters& p) {
+    EXPECT_THROW(GrainDynamics(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start()), InputError);
+  };
+  GrainParameters p = busy_box();
+  p.supplies[0].rate = 0.0;
+  refused(p);
+  p = busy_box();
+  p.supplies[1].entrance.zone.upper.x() = 0.05;
+  refused(p);
+  p = busy_box();
+  p.sinks[0].zone.lower.z() = 0.01;
+  refused(p);
+}
+
+}  // namespace
+}  // namespace thalweg::dem::turnover_test

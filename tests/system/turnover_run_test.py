@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Supplies and sinks in whole runs: dry grains and clumps, and grains in a stream between inlet and outlet.
+
+Called by ctest: turnover_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import sys
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import program
+from program import ProgramTest
+
+DRY = """
+system: grains
+name: chute
+domain: {size: [0.06, 0.03, 0.08], spacing: 5.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}
+gravity: {magnitude: 9.81, slope: 0}
+grains:
+  - {count: 40, diameter: {sizes: [3.0e-3, 5.0e-3], fractions: [0.5, 0.5]}, density: 2650, placement: {pattern: random}}
+  - {count: 5, shape: {clump: [{position: [0, 0, 0], diameter: 3.0e-3}, {position: [2.0e-3, 0, 0], diameter: 3.0e-3}]},
+     density: 2650, placement: {pattern: random, region: {lower: [0, 0, 0.05], upper: [0.06, 0.03, 0.08]}}}
+contact: {normal_stiffness: 1000, restitution: 0.5, friction: 0.5}
+supplies:
+  - {population: 0, rate: 300, region: {lower: [0.01, 0.01, 0.06], upper: [0.05, 0.02, 0.07]}, velocity: [0.1, 0, -0.2]}
+  - {population: 1, mass_rate: 0.01, from: 0.02, region: {lower: [0.01, 0.01, 0.06], upper: [0.05, 0.02, 0.075]}, seed: 2}
+sinks:
+  - {region: {lower: [0, 0, 0], upper: [0.02, 0.03, 0.01]}}
+  - {region: {lower: [0.04, 0, 0], upper: [0.06, 0.03, 0.01]},
+     recirculation: {delay: 0.03, region: {lower: [0, 0, 0.06], upper: [0.06, 0.03, 0.075]}}}
+run: {until: 0.2}
+output: {series: {every: 0.01}, grains: {every: 0.05}, checkpoint: {every: 0.1, keep: 9}}
+analysis: {transport_rate: {from: 0.02}}
+"""
+
+STREAM = """
+system: resolved
+name: open reach
+domain:
+  size: [0.060, 0.015, 0.020]
+  spacing: 1.25e-3
+  boundaries: {x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, time_step: 2.0e-4}
+initial: {fluid: {uniform: [0.2, 0, 0]}}
+gravity: {magnitude: 9.81, slope: 0}
+grains:
+  - {diameter: 5.0e-3, density: 1050, placement: {positions: [[0.02, 0.0075, 0.01], [0.03, 0.0075, 0.01]]}}
+contact: {restitution: 0.5, friction: 0.5}
+coupling: {fewest_cells_per_diameter: 4}
+supplies:
+  - {population: 0, rate: 20, region: {lower: [0.010, 0.003, 0.004], upper: [0.014, 0.012, 0.016]}}
+sinks:
+  - {region: {lower: [0.050, 0, 0], upper: [0.060, 0.015, 0.020]}}
+run: {until: 0.5}
+output: {series: {every: 0.02}, checkpoint: {every: 0.25, keep: 9}}
+analysis:
+  transport_rate: {from: 0.1}
+  entrainment: {from: 0.1}
+"""
+
+
+class TurnoverRun(ProgramTest):
+    CASE = DRY
+
+    def checkpoints(self, run):
+        return [path.read_bytes() for path in sorted((self.folder / run / "checkpoints").glob("step_*.h5"))]
+
+    def balance(self, run, at_start):
+        known = self.series(run)
+        there = known["grains"] + known["left_grains"] + known.get("returning_grains", 0.0)
+        numpy.testing.assert_array_equal(at_start + known["supplied_grains"], there)
+        return known
+
+    def test_dry_grains_and_clumps(self):
+        self.run_well("run", self.case, "--out", self.folder / "one")
+        known = self.balance("one", 45)
+        # 300 spheres/s, the 60th of which is due at the end and would come in with the next step; clumps of 0.01 kg/s
+        # in 0.18 s; none waits for a place for long.
+        two_spheres = 2 * numpy.pi / 6 * 3e-3 ** 3
+        lens = numpy.pi / 12 * (4 * 1.5e-3 + 2e-3) * (2 * 1.5e-3 - 2e-3) ** 2
+        clumps = 0.01 * 0.18 / (2650 * (two_spheres - lens))
+        self.assertEqual(known["supplied_grains"][-1], 59 + int(clumps))
+        self.assertGreater(known["left_grains"][-1], 10)
+        self.assertLess(known["supply_lag"].max(), 0.01)
+        # The first 40 spheres are as many small as large ones; of the 19 that follow, drawn from as many again, 9.5 with
+        # a deviation of 1.6.
+        small, large = (2650 * numpy.pi / 6 * d ** 3 for d in (3e-3, 5e-3))
+        clump_mass = 0.01 * 0.18 / clumps
+        self.assertAlmostEqual(known["supplied_mass"][-1], 29.5 * (small + large) + int(clumps) * clump_mass,
+                               delta=3 * 1.6 * (large - small))
+        reference = self.checkpoints("one")
+        self.run_well("run", self.case, "--out", self.folder / "three", ranks=3)
+        self.assertEqual(self.checkpoints("three"), reference)
+        self.run_well("run", self.case, "--out", self.folder / "again", "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0], ranks=2)
+        self.assertEqual(self.checkpoints("again")[-1], reference[-1])
+
+    def test_a_stream_carries_grains_from_supply_to_sink(self):
+        case = self.folder / "stream.yaml"
+        case.write_text(STREAM)
+        self.run_well("run", case, "--out", self.folder / "one")
+        known = self.balance("one", 2)
+        self.assertEqual(known["supplied_grains"][-1], 9)   # the tenth is due at the end
+        # At 0.2 m/s the water takes the first ones through the 36 mm to the sink in 0.18 s.
+        self.assertGreaterEqual(known["left_grains"][-1], 5)
+        reference = self.checkpoints("one")
+        self.run_well("run", case, "--out", self.folder / "two", ranks=2)
+        self.assertEqual(self.checkpoints("two"), reference)
+        self.run_well("run", case, "--out", self.folder / "again", "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
+        self.assertEqual(self.checkpoints("again")[-1], reference[-1])
+
+    def test_a_stream_that_recirculates_its_grains(self):
+        case = self.folder / "stream.yaml"
+        case.write_text(STREAM)
+        settings = ["--set", "supplies=[]", "--set", "run.until=1.0", "--set", "output.checkpoint.every=0.5", "--set",
+                    "sinks.0.recirculation={region: {lower: [0.010, 0.003, 0.004], upper: [0.014, 0.012, 0.016]}}"]
+        self.run_well("run", case, "--out", self.folder / "one", *settings)
+        known = self.balance("one", 2)
+        # Both come in again as soon as they have left, about every 0.2 s.
+        self.assertGreaterEqual(known["recirculated_grains"][-1], 6)
+        self.assertLessEqual(known["returning_grains"].max(), 1)
+        self.assertLess(known["largest_grain_speed"].max(), 0.4)   # twice the water's
+        self.run_well("run", case, "--out", self.folder / "two", *settings, ranks=2)
+        self.assertEqual(self.checkpoints("two"), self.checkpoints("one"))
+
+    def test_a_restart_keeps_supplies_and_sinks(self):
+        self.run_well("run", self.case, "--out", self.folder / "one", "--set", "run.until=0.01")
+        self.assert_refused("run", self.case, "--out", self.folder / "two", "--restart", self.folder / "one", "--set",
+                            "supplies.0.rate=200", words=["supplies.0.rate = 200: the run to be continued has 300"])
+
+
+program.main()
