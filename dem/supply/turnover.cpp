@@ -12,7 +12,7 @@ namespace thalweg::dem {
 
 namespace {
 
-constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step
+constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step, of all supplies, and that return
 constexpr double rounding = 1e-9;         // of a count or mass that is due
 
 void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& what) {
@@ -80,16 +80,20 @@ std::vector<PlaceSeeker> Turnover::due(double time) const {
   std::vector<PlaceSeeker> seekers;
   int queue = 0;
   for (const ReturningBody& back : state_.returning) {
-    if (seekers.size() == most_at_once) return seekers;
+    if (seekers.size() == most_at_once) break;
     if (back.due <= time) seekers.push_back({back.body, &sinks_[back.sink].recirculation->entrance, queue++});
   }
-  for (std::size_t s = 0; s < supplies_.size(); ++s, ++queue)
-    for (Tally so_far = state_.supplied[s]; seekers.size() < most_at_once;) {
+  // An equal share for every supply, so that none has to wait for another.
+  const std::size_t share = most_at_once / std::max<std::size_t>(1, supplies_.size()) + 1;
+  for (std::size_t s = 0; s < supplies_.size(); ++s, ++queue) {
+    Tally so_far = state_.supplied[s];
+    for (std::size_t n = 0; n < share; ++n) {
       TravellingBody next = body_of(s, so_far.bodies);
       if (!is_due(supplies_[s], so_far, next.mass(), time)) break;
       so_far.add(next.mass());
       seekers.push_back({std::move(next), &supplies_[s].entrance, queue});
     }
+  }
   return seekers;
 }
 

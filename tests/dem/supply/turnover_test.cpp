@@ -209,6 +209,25 @@ TEST(Turnover, GrainsWaitForAFreePlace) {
   for (std::size_t s = 0; s < store.owned; ++s) EXPECT_GE(store.position[s].z(), store.radius[s]);
 }
 
+// More is due than can seek a place at once: every supply gets its share.
+TEST(Turnover, NoSupplyWaitsForAnother) {
+  GrainParameters p = parameters();
+  Supply many = spheres(1e6);
+  many.entrance.zone = {Vec3(0.0, 0.0, 0.003), Vec3(0.04, 0.02, 0.037)};
+  many.entrance.velocity = std::nullopt;
+  Sink all;
+  all.zone = {Vec3::Zero(), Vec3(0.04, 0.02, 0.04)};
+  p.supplies = {many, many};
+  p.supplies[1].entrance.seed = 9;
+  p.sinks = {all};
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start());
+  run(grains, 40);
+  std::vector<std::int64_t> from(2);
+  for (const GlobalId id : all_ids(grains)) ++from[static_cast<std::size_t>((id - ids_at_start) % 2)];
+  EXPECT_GT(from[0], 5);
+  EXPECT_GT(from[1], 5);
+}
+
 // A sphere and a clump fall into a sink and come in again after the delay, with the ids and sizes they had, at rest.
 TEST(Turnover, GrainsComeBackAsTheyWere) {
   GrainParameters p = parameters();
