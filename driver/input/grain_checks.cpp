@@ -160,11 +160,30 @@ void check_populations(const Case& c, const io::YamlDocument& document) {
     });
 }
 
+// Throws where every point of an entrance is nearer to a face than the grain is large.
+void check_entrance(const Case& c, const beds::RegionKeys& region, double radius, const std::string& key,
+                    const io::YamlDocument& document) {
+  const PeriodicBox box = grain_box(c);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.periodic[static_cast<std::size_t>(axis)] || (c.disks && axis == 1)) continue;
+    const double lowest = radius, highest = box.size[axis] - radius;
+    if (region.upper[axis] >= lowest && region.lower[axis] <= highest) continue;
+    throw document.error(
+        key,
+        fmt::format("no grain of {:.4g} m can come in there without touching the wall across {}; give a region in m "
+                    "that has points between {:.4g} and {:.4g} m along {}",
+                    2.0 * radius, axis_name[axis], lowest, highest, axis_name[axis]));
+  }
+}
+
 void check_supplies(const Case& c, const io::YamlDocument& document) {
   const Vec3 box = grain_box(c).size;
   for (std::size_t n = 0; n < c.supplies.size(); ++n) {
     const std::string key = fmt::format("supplies.{}", n);
     at_place(document, key, [&] { check(c.supplies[n], c.grains, box); });
+    const beds::Population& population = c.grains[static_cast<std::size_t>(c.supplies[n].population)];
+    const double radius = 0.5 * (population.shape ? population.smallest_diameter() : population.largest_diameter());
+    check_entrance(c, c.supplies[n].region, radius, key + ".region", document);
     if (c.supplies[n].transport_rate && !(unit_mass_rate(c) > 0.0))
       throw document.error(
           key + ".transport_rate",
@@ -175,6 +194,10 @@ void check_supplies(const Case& c, const io::YamlDocument& document) {
     at_place(document, fmt::format("sinks.{}", n), [&] { check(c.sinks[n], box); });
   if (c.grains.empty() && !c.sinks.empty())
     throw document.error("sinks", "there are no grains that could leave; give the section grains, or remove this one");
+  for (std::size_t n = 0; n < c.sinks.size(); ++n)
+    if (const auto& back = c.sinks[n].recirculation)
+      check_entrance(c, back->region, 0.5 * largest_diameter(c), fmt::format("sinks.{}.recirculation.region", n),
+                     document);
 }
 
 void check_materials(const Case& c, const io::YamlDocument& document) {

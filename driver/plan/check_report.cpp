@@ -1,6 +1,7 @@
 #include "driver/plan/check_report.hpp"
 
 #include "beds/population_rows.hpp"
+#include "beds/supplies.hpp"
 #include "core/base/error.hpp"
 #include "dem/laws/contact_film.hpp"
 #include "dem/laws/contact_laws.hpp"
@@ -16,6 +17,7 @@
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 #include "driver/plan/case_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
 #include "driver/setup/build_system.hpp"
@@ -157,6 +159,29 @@ void add_solids(const Case& c, Lines& lines) {
   }
 }
 
+// What each supply brings, and sinks that the settled bed reaches into.
+void add_turnover(const Case& c, Lines& lines) {
+  for (std::size_t n = 0; n < c.supplies.size(); ++n) {
+    const beds::SupplyKeys& supply = c.supplies[n];
+    const double rate = grains_per_second(c, supply), until = std::min(c.run.until, supply.until.value_or(c.run.until));
+    const double mass = beds::mean_mass(c.grains[static_cast<std::size_t>(supply.population)]);
+    const double unit = unit_mass_rate(c);
+    lines.push_back(fmt::format(
+        "supply {:<3} {:.4g} grains/s like those of grains.{}, {:.3g} kg/s{}: {:.4g} from {:g} "
+        "to {:g} s",
+        n, rate, supply.population, rate * mass, unit > 0.0 ? fmt::format(", q* {:.3g}", rate * mass / unit) : "",
+        std::floor(rate * std::max(0.0, until - supply.from)), supply.from, until));
+  }
+  if (c.grains.empty() || periodic_axes(c.domain)[2]) return;
+  const double surface = settled_height(c);
+  for (std::size_t n = 0; n < c.sinks.size(); ++n)
+    if (const double low = c.sinks[n].region.lower.z(); low < surface)
+      lines.push_back(
+          fmt::format("sink {:<5} reaches {:.3g} m below the surface of the settled bed, about {:.3g} m high, "
+                      "and drains it",
+                      n, surface - low, surface));
+}
+
 void add_model_fluid(const Case& c, Lines& lines) {
   if (c.system != SystemKind::model_fluid) return;
   const model_fluid::ModelFluidParameters fluid = model_fluid_of(c);
@@ -286,6 +311,7 @@ Lines report_with(const Case& c, const Lines& found, double bandwidth) {
   add_domain(c, lines);
   append(fluid_lines(c), lines);
   add_grains(c, lines);
+  add_turnover(c, lines);
   add_solids(c, lines);
   append(bed_lines(c), lines);
   add_model_fluid(c, lines);

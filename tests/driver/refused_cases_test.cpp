@@ -133,6 +133,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"a_supply_outside_the_box",
             {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.08]}}]"},
             {"supplies.0.region.upper", "the region must lie in the box"}},
+        Bad{"a_supply_in_the_wall",
+            {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.002]}}]"},
+            {"supplies.0.region", "no grain of 0.00495 m can come in there", "across z", "between 0.002475 and"}},
+        Bad{"a_return_in_the_wall",
+            {"sinks=[{region: {lower: [0, 0, 0], upper: [0.01, 0.01, 0.07]}, recirculation: {region: {lower: [0, 0, "
+             "0.074], upper: [0.06, 0.01, 0.075]}}}]"},
+            {"sinks.0.recirculation.region", "can come in there"}},
         Bad{"a_supply_of_fixed_grains",
             {"grains.0.fixed=true",
              "supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},

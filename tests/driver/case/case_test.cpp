@@ -132,8 +132,8 @@ TEST(Case, WarnsOfWhatDeservesASecondLookAndOfNothingElse) {
     return n;
   };
   EXPECT_LT(place_of("subgrid"), place_of("only 5 cells across"));  // the gravest first
-  EXPECT_LT(place_of("only 5 cells across"), place_of("mean transport rate begins at 20 s, after the end"));
-  EXPECT_LT(place_of("mean transport rate begins at 20 s, after the end"), found.size());
+  EXPECT_LT(place_of("only 5 cells across"), place_of("analysis.transport_rate begins at 20 s, after the end"));
+  EXPECT_LT(place_of("analysis.transport_rate begins at 20 s, after the end"), found.size());
 }
 
 TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
