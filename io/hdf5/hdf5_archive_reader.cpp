@@ -127,7 +127,10 @@ struct Hdf5Reader::File {
   Handle attribute(const std::string& name) const {
     if (!has_attribute(name)) throw error(name, "the file has no such attribute");
     const auto [group_name, leaf] = group_and_name(name);
-    return Handle(H5Aopen_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    Handle found(H5Aopen_by_name(file, group_name.c_str(), leaf.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle space(H5Aget_space(found), H5Sclose);  // of several values, which would be read over what is beside
+    if (H5Sget_simple_extent_npoints(space) != 1) throw error(name, "the attribute is not a single value");
+    return found;
   }
 
   template <typename Number>

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import h5py
+import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
@@ -145,6 +146,17 @@ output: {series: {every: 0.01}, checkpoint: {every: 0.05, keep: 2}}
         (folder / "checkpoints/step_10003.h5.partial").write_bytes(bytes(1000))
         self.run_well("run", self.case, "--restart", folder)
         self.assertEqual([path.name for path in (folder / "checkpoints").iterdir() if "partial" in path.name], [])
+
+    def test_attributes_of_several_values_are_refused(self):
+        """As another program may write them, where one number belongs."""
+        self.run_well("run", self.case, "--until", "0.05")
+        path = self.last_checkpoint("run")
+        with h5py.File(path, "r+") as file:
+            for holder in (file, *(item for item in file.values() if isinstance(item, h5py.Group))):
+                for name, value in list(holder.attrs.items()):
+                    if numpy.issubdtype(getattr(value, "dtype", object), numpy.number):
+                        holder.attrs[name] = numpy.full(1000, value)
+        self.assert_refused("run", self.case, "--restart", path, "--out", "more", words=["is not a single value"])
 
 
 if __name__ == "__main__":
