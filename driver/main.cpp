@@ -152,6 +152,11 @@ std::string answer(const Command& command) {
       return {};
     case Command::Kind::create:
       return joined(write_new_case(command.experiment, command.path, measure_bandwidth()));
+    case Command::Kind::clump:
+      std::fputs(joined(clump_report(command.clump_order)).c_str(), stdout);
+      std::fflush(stdout);
+      draw_clump(command.clump_order);
+      return {};
     case Command::Kind::info:
       if (command.json) return info_json(command.path);
       return joined(command.csv ? info_table(command.runs) : info_report(command.path));

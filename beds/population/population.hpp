@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace thalweg::beds {
@@ -23,10 +24,27 @@ struct MemberKeys {
   bool operator==(const MemberKeys&) const = default;
 };
 
+// The body that the spheres of a clump stand for, at 1 kg/m^3.
+struct BodyKeys {
+  double volume = 0.0;          // m^3
+  Vec3 centre = Vec3::Zero();   // m, in the frame of the members
+  std::vector<double> inertia;  // m^5, about the centre: xx, yy, zz, xy, xz, yz (core/geometry/symmetric_pairs.hpp)
+  bool operator==(const BodyKeys&) const = default;
+};
+
 // The shape of grains that are not spheres.
 struct ShapeKeys {
-  std::vector<MemberKeys> clump;
-  bool operator==(const ShapeKeys&) const = default;
+  std::vector<MemberKeys> clump;  // made of the surface where there is one
+  std::optional<BodyKeys> body;   // none: volume, centre and inertia of the clump's union
+  // The surface to make them of; none of these is kept once it is done (take_surface()).
+  std::optional<std::string> stl;       // file
+  std::optional<double> scale;          // m per unit of the file; else 1
+  std::optional<std::int64_t> spheres;  // see ClumpFit
+  std::optional<double> tolerance;
+  std::string made_from = {};  // the file, absolute; empty: of no surface
+
+  // Whatever they are made from.
+  bool operator==(const ShapeKeys& other) const { return clump == other.clump && body == other.body; }
 };
 
 // A rotation about an axis from the shape as it is given.

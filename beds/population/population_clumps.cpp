@@ -1,6 +1,10 @@
 #include "beds/population/population_clumps.hpp"
 
+#include "beds/shapes/mesh_clump.hpp"
 #include "core/base/counter_random.hpp"
+#include "core/base/error.hpp"
+#include "core/geometry/symmetric_pairs.hpp"
+#include "dem/clumps/clump_of_body.hpp"
 
 #include <Eigen/Geometry>
 
@@ -17,12 +21,45 @@ constexpr std::uint64_t first_orientation_draw = std::uint64_t{1} << 41;
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
+dem::BodyMoments moments_of(const BodyKeys& body) {
+  dem::BodyMoments moments;
+  moments.volume = body.volume;
+  moments.centre = body.centre;
+  for (std::size_t n = 0; n < body.inertia.size(); ++n) {
+    const auto& [row, column] = symmetric_pairs[n];
+    moments.inertia(row, column) = moments.inertia(column, row) = body.inertia[n];
+  }
+  return moments;
+}
+
 }  // namespace
 
 std::shared_ptr<const dem::ClumpShape> clump_shape_of(const Population& population) {
   std::vector<dem::PlacedSphere> members;
   for (const MemberKeys& member : population.shape->clump) members.push_back({member.position, 0.5 * member.diameter});
+  if (const std::optional<BodyKeys>& body = population.shape->body) {
+    if (population.thickness > 0.0)
+      throw InputError("The clump has a body in space, and disks have none; remove shape.body, or disks.");
+    return std::make_shared<const dem::ClumpShape>(clump_shape(members, moments_of(*body)));
+  }
   return std::make_shared<const dem::ClumpShape>(clump_shape(members, population.thickness));
+}
+
+void take_surface(ShapeKeys& shape, const TriangleMesh& surface) {
+  ClumpFit fit;
+  if (shape.spheres) fit.spheres = static_cast<int>(std::min<std::int64_t>(*shape.spheres, ClumpFit::most_spheres));
+  fit.tolerance = shape.tolerance;
+  const MeshClump made = clump_of(surface, fit);
+  shape.clump.clear();
+  for (const dem::PlacedSphere& sphere : made.spheres) shape.clump.push_back({sphere.position, 2.0 * sphere.radius});
+  shape.body.emplace();
+  shape.body->volume = made.body.volume;
+  shape.body->centre = made.body.centre;
+  for (const auto& [row, column] : symmetric_pairs) shape.body->inertia.push_back(made.body.inertia(row, column));
+  shape.stl.reset();
+  shape.spheres.reset();
+  shape.tolerance.reset();
+  shape.scale.reset();
 }
 
 dem::Quaternion orientation_of(const Population& population, std::size_t grain) {

@@ -3,6 +3,7 @@
 
 #include "beds/population/population.hpp"
 #include "core/geometry/periodic_box.hpp"
+#include "core/geometry/triangle_mesh.hpp"
 #include "core/state/bed.hpp"
 #include "dem/clumps/clump_seed.hpp"
 
@@ -14,6 +15,10 @@ namespace thalweg::beds {
 
 // Shape of the clumps of a population with `shape`. Throws InputError if no clump can be made of it.
 std::shared_ptr<const dem::ClumpShape> clump_shape_of(const Population& population);
+
+// Makes the clump of `shape` of a surface in m, by its number of spheres and tolerance, and forgets these. Throws
+// InputError where none can be made (shapes/mesh_clump.hpp).
+void take_surface(ShapeKeys& shape, const TriangleMesh& surface);
 
 // Orientation of one clump of such a population: the given one, or one drawn uniformly from all rotations (K.
 // Shoemake, Graphics Gems III (1992) 124; of disks, from those about y). grain: its number in the population.

@@ -18,11 +18,46 @@ static void describe(SectionVisitor& visit, MemberKeys& member) {
              {.unit = "m", .meaning = "of the sphere", .required = true, .above = 0.0, .example = 4e-3});
 }
 
+static void describe(SectionVisitor& visit, BodyKeys& body) {
+  visit.real("volume", body.volume, {.unit = "m^3", .meaning = "of the body", .required = true, .above = 0.0});
+  visit.vec3("centre", body.centre, {.unit = "m", .meaning = "in the frame of the spheres", .required = true});
+  visit.real_list("inertia", body.inertia,
+                  {.unit = "m^5", .meaning = "xx, yy, zz, xy, xz, yz about the centre, at 1 kg/m^3", .required = true});
+  visit.require(!visit.reading() || body.inertia.size() == 6, "inertia",
+                "a symmetric tensor has six components; give xx, yy, zz, xy, xz, yz in m^5");
+}
+
 static void describe(SectionVisitor& visit, ShapeKeys& shape) {
+  visit.text("stl", shape.stl,
+             {.meaning = "file with the closed surface of one grain, relative to this file; spheres are made of it",
+              .example = "pebble.stl"});
+  const bool of_surface = shape.stl.has_value();
+  const OnlyIf has_surface{of_surface || !visit.reading(), "only a shape made of an STL file has it; remove it"};
+  visit.integer("spheres", shape.spheres,
+                {.meaning = "at most, of each clump", .at_least = 1, .example = 20, .only_if = has_surface});
+  visit.real("tolerance", shape.tolerance,
+             {.unit = "equivalent diameters",
+              .meaning = "mean distance of the surface from the inscribed spheres at which these suffice",
+              .above = 0.0,
+              .example = 0.02,
+              .only_if = has_surface});
+  visit.real("scale", shape.scale,
+             {.unit = "m",
+              .meaning = "length of one unit of the STL file; default: 1",
+              .above = 0.0,
+              .example = 0.001,
+              .only_if = has_surface});
+  const OnlyIf has_spheres{!of_surface, "the spheres are made of the surface; remove this key or stl"};
   visit.list("clump", shape.clump,
-             {.meaning = "spheres that may overlap and move as one rigid grain", .required = true});
-  visit.require(!shape.clump.empty(), "clump",
+             {.meaning = "spheres that may overlap and move as one rigid grain",
+              .required = !of_surface,
+              .only_if = has_spheres});
+  visit.section("body", shape.body,
+                {.meaning = "what the spheres stand for; default: their union", .only_if = has_spheres});
+  visit.require(of_surface || !shape.clump.empty(), "clump",
                 "a clump needs at least one sphere; give its position and diameter in m");
+  visit.require(!of_surface || shape.spheres || shape.tolerance, "spheres",
+                "it is not said how many spheres to make of the surface; give their number, a tolerance, or both");
 }
 
 static void describe(SectionVisitor& visit, OrientationKeys& orientation) {

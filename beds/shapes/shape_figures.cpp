@@ -82,11 +82,14 @@ FitFigures fit_figures(const TriangleMesh& mesh, const MeshClump& clump) {
 
   std::vector<std::size_t> sphere_of;
   const std::vector<SurfacePoint> on_clump = points_of(clump.spheres, &sphere_of);
+  std::vector<SurfacePoint> on_union = on_clump;
+  const std::vector<SurfacePoint> creases = crease_points(clump.spheres);
+  on_union.insert(on_union.end(), creases.begin(), creases.end());
   const Distances to_clump = distances(points_of(mesh, 0.05 * diameter), [&](const Vec3& point) {
-    return distance_from_union(point, clump.spheres, on_clump);
+    return distance_from_union(point, clump.spheres, on_union);
   });
   const MeshDistance from_mesh(mesh);
-  const Distances to_surface = distances(on_clump, [&](const Vec3& point) { return from_mesh(point); });
+  const Distances to_surface = distances(on_union, [&](const Vec3& point) { return from_mesh(point); });
   figures.mean_to_clump = to_clump.mean / diameter;
   figures.largest_to_clump = to_clump.largest / diameter;
   figures.mean_to_surface = to_surface.mean / diameter;

@@ -45,4 +45,29 @@ std::vector<SurfacePoint> points_of(std::span<const dem::PlacedSphere> spheres, 
   return points;
 }
 
+std::vector<SurfacePoint> crease_points(std::span<const dem::PlacedSphere> spheres) {
+  constexpr int on_circle = 500;
+  std::vector<SurfacePoint> points;
+  for (std::size_t m = 0; m < spheres.size(); ++m)
+    for (std::size_t n = m + 1; n < spheres.size(); ++n) {
+      const dem::PlacedSphere &a = spheres[m], &b = spheres[n];
+      const Vec3 apart = b.position - a.position;
+      const double distance = apart.norm();
+      if (distance >= a.radius + b.radius || distance <= std::abs(a.radius - b.radius)) continue;
+      const Vec3 axis = apart / distance, any = std::abs(axis.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
+      const Vec3 u = axis.cross(any).normalized(), v = axis.cross(u);
+      const double along = 0.5 * (distance + (a.radius - b.radius) * (a.radius + b.radius) / distance);
+      const double radius = std::sqrt(std::max(0.0, (a.radius - along) * (a.radius + along)));
+      for (int k = 0; k < on_circle; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / on_circle;
+        const Vec3 point = a.position + along * axis + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const dem::PlacedSphere& other) {
+          return &other != &a && &other != &b && (point - other.position).squaredNorm() < other.radius * other.radius;
+        });
+        if (!held) points.push_back({point, 0.0});
+      }
+    }
+  return points;
+}
+
 }  // namespace thalweg::beds

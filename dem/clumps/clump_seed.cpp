@@ -1,6 +1,7 @@
 #include "dem/clumps/clump_seed.hpp"
 
 #include "core/base/error.hpp"
+#include "dem/clumps/clump_of_body.hpp"
 #include "dem/clumps/sphere_union_inertia.hpp"
 #include "dem/motion/grain_volume.hpp"
 
@@ -79,6 +80,34 @@ ClumpShape clump_shape(std::span<const PlacedSphere> members, double thickness) 
     const Eigen::Quaterniond q(axes);
     shape.principal = normalised({q.w(), q.x(), q.y(), q.z()});
   }
+  for (PlacedSphere& member : shape.members) {
+    member.position = axes.transpose() * (member.position - shape.centre);
+    shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);
+  }
+  return shape;
+}
+
+ClumpShape clump_shape(std::span<const PlacedSphere> members, const BodyMoments& body) {
+  check_members(members, 0.0);
+  if (!(body.volume > 0.0) || !body.centre.allFinite() || !body.inertia.allFinite())
+    throw InputError(
+        fmt::format("The body of a clump has a volume of {:g} m^3 and a centre or an inertia; all must be "
+                    "finite, and the volume positive.",
+                    body.volume));
+  const Eigen::Matrix3d axes = principal_axes(body.inertia);
+  ClumpShape shape;
+  shape.members.assign(members.begin(), members.end());
+  shape.volume = body.volume;
+  shape.centre = body.centre;
+  shape.moments = (axes.transpose() * body.inertia * axes).diagonal();
+  constexpr double rounding = 1e-9;
+  if (!(shape.moments.minCoeff() > 0.0) || 2.0 * shape.moments.maxCoeff() > (1.0 + rounding) * shape.moments.sum())
+    throw InputError(fmt::format(
+        "The body of a clump has the principal moments {:g}, {:g} and {:g} m^5; they must be positive, and none may "
+        "exceed the sum of the others.",
+        shape.moments[0], shape.moments[1], shape.moments[2]));
+  const Eigen::Quaterniond q(axes);
+  shape.principal = normalised({q.w(), q.x(), q.y(), q.z()});
   for (PlacedSphere& member : shape.members) {
     member.position = axes.transpose() * (member.position - shape.centre);
     shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);

@@ -38,6 +38,7 @@ constexpr Example examples[] = {
     {"thalweg analyze run/a --from 4", "transport, surface and profiles of what it has stored"},
     {"thalweg plot all run/a", "side view, transport rate and profiles (plot --help: more kinds)"},
     {"thalweg report run/a", "all about a run on one page"},
+    {"thalweg clump pebble.stl --spheres 20 --scale 0.001", "spheres that stand for a scanned grain"},
     {"thalweg sweep slopes.yaml", "many runs of one case, into one table (docs/sweep.md)"},
     {"thalweg defaults > all_keys.yaml", "the keys of a case, with default and meaning"},
     {"thalweg defaults coupling.lubrication", "one section of it"}};
@@ -167,6 +168,21 @@ void add_new(CLI::App& app, Command& command, Texts& texts) {
   add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 
+void add_clump(CLI::App& app, ClumpOrder& order) {
+  CLI::App* clump = app.add_subcommand("clump", "Make spheres that stand for the surface in an STL file");
+  clump->add_option("MESH.stl", order.surface, "The surface of one grain")->required();
+  clump->add_option("--spheres", order.spheres, "At most this number of spheres")->check(positive_number());
+  clump
+      ->add_option(
+          "--tolerance", order.tolerance,
+          "Mean distance of the surface from the inscribed spheres at which these suffice, in diameters of the "
+          "sphere of its volume")
+      ->check(positive_number());
+  clump->add_option("--scale", order.scale, "Length of one unit of the file, m (default: 1)")->check(positive_number());
+  clump->add_option("--density", order.density, "Of the grain, kg/m^3 (default: 2650)")->check(positive_number());
+  clump->add_option("--out", order.out, "OUT.yaml and OUT.png are written (default: MESH_clump, here)");
+}
+
 // Refuses option values that CLI11 accepts but that have no meaning.
 void refuse_nonsense(const CLI::App& app, const Command& command) {
   if (command.until && !(*command.until > 0.0 && std::isfinite(*command.until)))
@@ -239,6 +255,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   app.failure_message(CLI::FailureMessage::simple);
   add_run(app, command, texts);
   add_new(app, command, texts);
+  add_clump(app, command.clump_order);
+  app.get_subcommand("clump")->final_callback([&] { command.kind = Command::Kind::clump; });
   add_others(app, command);
   app.footer(footer_of(""));
   for (CLI::App* sub : app.get_subcommands({})) sub->footer(footer_of(sub->get_name()));

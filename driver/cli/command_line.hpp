@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
+#include "driver/cli/clump_command.hpp"
 #include "driver/cost/performance_model.hpp"
 #include "driver/plan/new_case.hpp"
 
@@ -12,7 +13,7 @@
 namespace thalweg::driver {
 
 struct Command {
-  enum class Kind { run, check, create, defaults, info, stop } kind = Kind::run;
+  enum class Kind { run, check, create, clump, defaults, info, stop } kind = Kind::run;
   std::string path;                   // CASE.yaml of run and check; run folder of stop, or checkpoint of info
   std::vector<std::string> runs;      // of info: with --csv any number, else only `path`
   std::string system;                 // of defaults, or section; empty: resolved
@@ -31,6 +32,7 @@ struct Command {
   bool schema = false;     // of defaults
   bool solve = false;      // of check
   Experiment experiment;   // of create
+  ClumpOrder clump_order;
   std::string line;        // the command as given
 };
 

@@ -1,11 +1,13 @@
 #include "driver/input/bed_placement.hpp"
 
 #include "beds/files/population_bed.hpp"
+#include "beds/population/population_clumps.hpp"
 #include "core/base/error.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/input/case_checks.hpp"
 #include "io/hdf5/bed_file.hpp"
+#include "io/text/stl_file.hpp"
 
 #include <fmt/format.h>
 
@@ -34,6 +36,24 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
   }
 }
 
+// Makes the clumps of populations whose shape is an STL file.
+void take_shape(beds::Population& population, const io::YamlDocument& document, const std::string& grains,
+                const Ranks& ranks) {
+  if (!population.shape || !population.shape->stl) return;
+  const std::string key = grains + ".shape.stl";
+  beds::ShapeKeys& shape = *population.shape;
+  shape.made_from = document.path_beside(*shape.stl, key);
+  try {
+    TriangleMesh surface = io::read_stl(shape.made_from, ranks);
+    for (Vec3& point : surface.points) point *= shape.scale.value_or(1.0);
+    take_surface(shape, surface);
+  } catch (const InputError& error) {
+    std::string reason = error.what();
+    if (reason.ends_with('.')) reason.pop_back();
+    throw document.error(key, reason);
+  }
+}
+
 }  // namespace
 
 void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks) {
@@ -52,6 +72,7 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
       if (known) bed = known(c, n, ranks);
       if (!bed) bed = read_bed(*file, document, key + ".placement.file", ranks);
     }
+    take_shape(c.grains[n], document, key, ranks);
     at_place(document, key, [&] {
       complete(c.grains[n], c.disks ? c.disks->thickness : 0.0, std::move(bed), box, c.analysis.reference_diameter,
                ranks);

@@ -14,6 +14,9 @@ template <typename AnyCase, typename Visit>
 void for_each_input(AnyCase& c, const Visit& visit) {
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (auto& file = c.grains[n].placement.file) visit(fmt::format("grains.{}.placement.file", n), *file);
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (auto& shape = c.grains[n].shape; shape && !shape->made_from.empty())
+      visit(fmt::format("grains.{}.shape.stl", n), shape->made_from);
   for (std::size_t n = 0; n < c.solids.size(); ++n)
     if (!c.solids[n].stl.empty()) visit(fmt::format("solids.{}.stl", n), c.solids[n].stl);
   const auto initial = [&](const char* key, auto& path) {

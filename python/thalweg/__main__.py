@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 try:
+    import thalweg.clump_picture
     import thalweg.plot
     import thalweg.page.command
     import thalweg.sweep.command
@@ -36,6 +37,7 @@ def parser_of_commands():
     parser = argparse.ArgumentParser(prog="thalweg", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     add_analyze_to(commands)
+    thalweg.clump_picture.add_to(commands)
     thalweg.plot.add_to(commands)
     thalweg.page.command.add_to(commands)
     thalweg.sweep.command.add_to(commands)
@@ -52,7 +54,8 @@ def analyze(wanted):
 
 def main(arguments=None):
     wanted = parser_of_commands().parse_args(arguments)
-    actions = {"analyze": analyze, "plot": thalweg.plot.plot, "report": thalweg.page.command.report,
+    actions = {"analyze": analyze, "clump-picture": thalweg.clump_picture.clump_picture,
+               "plot": thalweg.plot.plot, "report": thalweg.page.command.report,
                "sweep": thalweg.sweep.command.sweep}
     try:
         return actions[wanted.command](wanted)

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Clumps made of a surface: `thalweg clump`, `shape: {stl: ...}` in a case, what is kept of it, and restarts.
+
+Called by ctest: shape_run_test.py THALWEG MPIEXEC [unittest arguments]
+"""
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
+import program
+from program import ProgramTest
+
+DIAMETER, DENSITY = 4.0e-3, 2550.0   # m, kg/m^3; the surfaces of cases/shapes have the volume of a sphere of diameter 1
+
+
+class ShapeRun(ProgramTest):
+    CASE = """
+system: grains
+name: pour
+domain:
+  size: [0.024, 0.024, 0.06]
+  spacing: 1.0e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}
+gravity: {magnitude: 9.8}
+grains:
+  - shape: {stl: triaxial.stl, spheres: 6, scale: 4.0e-3}
+    density: 2550
+    count: 8
+    placement: {pattern: random, seed: 3}
+contact: {restitution: 0.4}
+run: {until: 0.02}
+output: {checkpoint: {every: 0.01}}
+"""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("triaxial", "prolate", "pebble"):
+            shutil.copy(ROOT / f"cases/shapes/{name}.stl", self.folder)
+
+    def test_a_case_has_the_mass_and_moments_of_the_surface_and_keeps_them(self):
+        self.run_well("run", self.case)
+        volume = numpy.pi / 6.0 * DIAMETER**3
+        with h5py.File(self.last_checkpoint("run")) as saved:
+            grains = saved["grains"]
+            self.assertLess(abs(grains["clump_mass"][:] / (DENSITY * volume) - 1.0).max(), 1e-6)   # single precision
+            # The surface inscribed in an ellipsoid of half axes 1.5 : 1 : 0.65, of 1280 triangles.
+            squares = numpy.array([1.5, 1.0, 0.65]) ** 2 * (DIAMETER / 2.0) ** 2 / (1.5 * 0.65) ** (2.0 / 3.0)
+            moments = DENSITY * volume / 5.0 * numpy.sort(squares.sum() - squares)
+            self.assertLess(abs(grains["clump_moments"][:] / moments - 1.0).max(), 5e-3)
+        # The case that is kept needs no surface any more, and makes the same run; the surface is in the provenance.
+        kept = self.folder / "run/case.yaml"
+        self.assertNotIn("stl", kept.read_text())
+        source = self.summary("run")["provenance"]["inputs"][0]
+        self.assertEqual((source["key"], source["path"]), ("grains.0.shape.stl", "../triaxial.stl"))
+        (self.folder / "triaxial.stl").unlink()
+        self.run_well("run", kept, "--out", "again")
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("again").read_bytes())
+
+    def test_restarts_and_two_ranks_have_the_same_bits(self):
+        self.run_well("run", self.case)
+        self.run_well("run", self.case, "--until", "0.01", "--out", "parts")
+        self.run_well("run", self.case, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=2)
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("parts").read_bytes())
+
+    def test_a_clump_is_described_and_written(self):
+        done = self.thalweg("clump", "prolate.stl", "--spheres", "5", "--scale", str(DIAMETER))
+        figures = dict(re.findall(r"^  (sphericity|Corey shape factor|axes) +([\d., e+-]+)", done.stdout, re.M))
+        # 2:1: the area is 2 pi (1 + 2 asin(e)/e) with e^2 = 3/4, the volume 8 pi/3.
+        e = numpy.sqrt(0.75)
+        sphericity = 4.0 * numpy.pi * 2.0 ** (2.0 / 3.0) / (2.0 * numpy.pi * (1.0 + 2.0 / e * numpy.arcsin(e)))
+        self.assertAlmostEqual(float(figures["sphericity"]), sphericity, delta=3e-3)
+        self.assertAlmostEqual(float(figures["Corey shape factor"]), numpy.sqrt(0.5), delta=3e-3)
+        axes = numpy.array([float(axis) for axis in figures["axes"].strip(" ,").split(", ")])
+        self.assertLess(abs(axes / (DIAMETER * 2.0 ** (-1.0 / 3.0) * numpy.array([2.0, 1.0, 1.0])) - 1.0).max(), 5e-3)
+        self.assertEqual((self.folder / "prolate_clump.yaml").read_text().count("diameter"), 5)
+
+    def test_what_cannot_be_is_refused(self):
+        (self.folder / "cut.stl").write_bytes((self.folder / "pebble.stl").read_bytes()[:-100])
+        for shape, words in (
+                ("{stl: none.stl, spheres: 5}", ("grains.0.shape.stl", "no such file")),
+                ("{stl: cut.stl, spheres: 5}", ("grains.0.shape.stl", "cut off")),
+                ("{stl: pebble.stl, spheres: 5, scale: 4.0}", ("grains.0.shape.stl", "scale")),
+                ("{stl: pebble.stl}", ("grains.0.shape.spheres",)),
+                ("{stl: pebble.stl, spheres: 3, clump: [{position: [0, 0, 0], diameter: 0.004}]}", ("clump",)),
+                ("{clump: [{position: [0, 0, 0], diameter: 0.004}], spheres: 3}", ("spheres", "STL"))):
+            self.assert_refused("check", self.case, "--set", f"grains.0.shape={shape}", words=words)
+
+
+if __name__ == "__main__":
+    program.main(side_by_side=True)
