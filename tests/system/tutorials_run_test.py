@@ -43,7 +43,7 @@ class Tutorials(ProgramTest):
 
     def test_every_case_is_checked_and_starts(self):
         cases = sorted((self.folder / TUTORIALS).glob("*/case.yaml"))
-        self.assertEqual(len(cases), 6)   # the third varies the case of the second
+        self.assertEqual(len(cases), 7)   # the third varies the case of the second
         self.run_well("run", f"{TUTORIALS}/7_scour_at_a_pier/pour.yaml", "--out", "run/pier_bed", "--until", "0.05")
         for case in cases:
             name = case.parent.name
@@ -65,7 +65,7 @@ class Tutorials(ProgramTest):
 
     def test_a_run_that_is_not_there(self):
         scripts = sorted((ROOT / TUTORIALS).glob("*/check.py"))
-        self.assertEqual(len(scripts), 7)
+        self.assertEqual(len(scripts), 8)
         for script in scripts[1:]:   # the beds of the first are there
             done = self.check_script(script.parent.name)
             self.assertEqual(done.returncode, 1, done.stdout)
