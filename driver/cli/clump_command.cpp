@@ -89,6 +89,9 @@ std::vector<std::string> clump_report(const ClumpOrder& order) {
   const std::vector<std::string> of_clump = lines_of_clump(mesh, clump);
   lines.insert(lines.end(), of_clump.begin(), of_clump.end());
   const std::string out = file_without_ending(order);
+  std::error_code ignored;  // writing says what is wrong
+  if (const auto folder = std::filesystem::path(out).parent_path(); !folder.empty())
+    std::filesystem::create_directories(folder, ignored);
   io::write_text_atomically(out + ".yaml", shape_yaml(clump));
   std::string keys = fmt::format("stl: {}", order.surface);
   if (order.spheres) keys += fmt::format(", spheres: {}", *order.spheres);
