@@ -3,6 +3,7 @@
 
 compare_methods.py THALWEG SURFACE.stl...    prints a row of the table of README.md for each surface, method and number
 """
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 from thalweg.clump_picture import read_spheres
 from thalweg.stl import read_stl
 
-RESOLUTION = 64        # voxels along the longest extent, as in `thalweg clump`
+RESOLUTION = 40        # voxels along the longest extent
 NUMBERS = (5, 10, 20)
 OVERLAPS = (0.0, 0.3, 0.6)
 
@@ -66,13 +67,12 @@ def grown(spheres, volume, grid, cell):
 
 
 def figures(spheres, triangles, volume, moments, grid, cell):
-    """Share of the volume that the spheres hold, mean distance and largest error of the moments of the grown spheres."""
+    """Mean distance and largest error of the moments of the grown spheres."""
     points, areas, _ = surface_points(triangles)
-    held = np.count_nonzero(gaps(grid, spheres) < 0.0) * cell / volume
     larger = grown(spheres, volume, grid, cell)
     of_union = principal_moments(grid[gaps(grid, larger) < 0.0], cell)
     distance = np.average(np.abs(gaps(points, larger)), weights=areas) / (6.0 * volume / np.pi) ** (1.0 / 3.0)
-    return held, distance, np.abs(of_union / moments - 1.0).max()
+    return distance, np.abs(of_union / moments - 1.0).max()
 
 
 def principal_moments(points, cell):
@@ -82,13 +82,14 @@ def principal_moments(points, cell):
 
 
 def greedy_spheres(program, surface, number):
-    """The spheres of `thalweg clump`, which have grown already."""
+    """The spheres of `thalweg clump`, which have grown already, and the share of the volume that they held before."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "clump"
-        subprocess.run([program, "clump", surface, "--spheres", str(number), "--out", out], check=True,
-                       capture_output=True)
+        command = [program, "clump", surface, "--spheres", str(number), "--scale", "0.001", "--out", out]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
         centres, radii = read_spheres(out.with_suffix(".yaml"))
-    return np.column_stack([centres, radii])
+    held = float(re.search(r"volume +([\d.]+) % in the inscribed", done.stdout)[1]) / 100.0
+    return 1000.0 * np.column_stack([centres, radii]), held   # in the unit of the file
 
 
 def compare(program, surface):
@@ -97,22 +98,18 @@ def compare(program, surface):
     volume = len(centres) * step**3
     moments = principal_moments(centres, step**3)
     lower, upper = triangles.min(axis=(0, 1)) - 0.1, triangles.max(axis=(0, 1)) + 0.1
-    grid = np.stack(np.meshgrid(*[np.arange(a, b, step) for a, b in zip(lower, upper)], indexing="ij"), -1).reshape(-1, 3)
+    axes = [np.arange(a, b, step) for a, b in zip(lower, upper)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     for number in NUMBERS:
-        methods = {f"Euclidean, overlap {o:g}": euclidean_spheres(centres, distances, number, o) for o in OVERLAPS}
+        methods = {}
+        for overlap in OVERLAPS:
+            spheres = euclidean_spheres(centres, distances, number, overlap)
+            methods[f"Euclidean, overlap {overlap:g}"] = spheres, np.mean(gaps(centres, spheres) < 0.0)
         methods["volume won"] = greedy_spheres(program, surface, number)
-        for method, spheres in methods.items():
-            if method == "volume won":   # inscribed again, for the same measure of the volume held
-                spheres = spheres - [0.0, 0.0, 0.0, max(0.0, -np.min(centre_excess(spheres, triangles)))]
-            held, distance, error = figures(spheres, triangles, volume, moments, grid, step**3)
+        for method, (spheres, held) in methods.items():
+            distance, error = figures(spheres, triangles, volume, moments, grid, step**3)
             print(f"| {Path(surface).stem} | {number} | {method} | {100 * held:.1f} | {100 * distance:.2f} | "
                   f"{100 * error:.1f} |", flush=True)
-
-
-def centre_excess(spheres, triangles):
-    """Least distance of the surface from each centre, less the radius: negative where a sphere sticks out."""
-    points, _, _ = surface_points(triangles)
-    return [np.linalg.norm(points - s[:3], axis=1).min() - s[3] for s in spheres]
 
 
 if __name__ == "__main__":
