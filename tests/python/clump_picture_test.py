@@ -14,7 +14,7 @@ SHAPES = Path(__file__).resolve().parents[2] / "cases/shapes"
 
 class ClumpPicture(unittest.TestCase):
     def test_a_sphere_of_triangles_looks_like_a_sphere(self):
-        """The directions of the triangles of an ellipsoid of the shapes, brought to a sphere of radius 2 about (1, 0, 3)."""
+        """The corners of an ellipsoid, brought to a sphere of radius 2 about (1, 0, 3)."""
         corners = read_stl(SHAPES / "prolate.stl") / np.array([2.0, 1.0, 1.0])
         corners *= 2.0 / np.linalg.norm(corners, axis=-1, keepdims=True)
         middle = np.array([1.0, 0.0, 3.0])
