@@ -9,10 +9,10 @@
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/row_range.hpp"
-#include "core/state/whole_dataset.hpp"
 #include "dem/contact/contact_archive.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
+#include "dem/ranks/grain_archive.hpp"
 #include "dem/ranks/grain_batch.hpp"
 
 #include <fmt/format.h>
@@ -20,133 +20,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
-#include <utility>
 
 namespace thalweg::dem {
 
 namespace {
-
-constexpr const char* vector_names[GrainRow::vectors] = {
-    "position", "velocity", "angular_velocity", "contact_force", "contact_torque", "load_force", "load_torque"};
-
-void write_grains(ArchiveWriter& archive, const std::string& group, const GrainBatch& batch, const RowRange& share,
-                  int attached_width, bool with_ids, bool with_clumps) {
-  std::vector<double> radius, mass, vectors;
-  std::vector<std::int64_t> id, motion, material;
-  for (const GrainRow& row : batch.rows) {
-    id.push_back(row.id);
-    radius.push_back(row.radius);
-    mass.push_back(row.mass);
-    motion.push_back(row.motion);
-    material.push_back(row.material);
-  }
-  if (with_ids) archive.write(group + "/id", id, share.box());
-  archive.write(group + "/radius", radius, share.box());
-  archive.write(group + "/mass", mass, share.box());
-  archive.write(group + "/motion", motion, share.box());
-  archive.write(group + "/material", material, share.box());
-  for (int v = 0; v < GrainRow::vectors; ++v) {
-    vectors.clear();
-    for (const GrainRow& row : batch.rows) vectors.insert(vectors.end(), row.value[v].begin(), row.value[v].end());
-    archive.write(group + "/" + vector_names[v], vectors, share.box(3));
-  }
-  if (attached_width > 0) archive.write(group + "/attached", batch.attached, share.box(attached_width));
-  if (!with_clumps) return;
-  std::vector<std::int64_t> clump;
-  vectors.clear();
-  for (const GrainRow& row : batch.rows) {
-    clump.push_back(row.clump);
-    vectors.insert(vectors.end(), row.offset.begin(), row.offset.end());
-  }
-  archive.write(group + "/clump", clump, share.box());
-  archive.write(group + "/offset", vectors, share.box(3));
-}
-
-GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const RowRange& share, int attached_width) {
-  const auto rows = static_cast<std::size_t>(share.last - share.first);
-  GrainBatch batch;
-  batch.rows.resize(rows);
-  std::vector<double> radius(rows), mass(rows), vectors(3 * rows);
-  std::vector<std::int64_t> id(rows), motion(rows), material(rows);
-  if (archive.has(group + "/id"))
-    archive.read(group + "/id", id, share.box());
-  else
-    std::iota(id.begin(), id.end(), share.first);
-  archive.read(group + "/radius", radius, share.box());
-  archive.read(group + "/mass", mass, share.box());
-  archive.read(group + "/motion", motion, share.box());
-  archive.read(group + "/material", material, share.box());
-  for (std::size_t r = 0; r < rows; ++r) batch.rows[r] = {id[r], motion[r], material[r], radius[r], mass[r], {}};
-  for (int v = 0; v < GrainRow::vectors; ++v) {
-    archive.read(group + "/" + vector_names[v], vectors, share.box(3));
-    for (std::size_t r = 0; r < rows; ++r)
-      batch.rows[r].value[v] = {vectors[3 * r], vectors[3 * r + 1], vectors[3 * r + 2]};
-  }
-  batch.attached.resize(rows * attached_width);
-  if (attached_width > 0) archive.read(group + "/attached", batch.attached, share.box(attached_width));
-  if (!archive.has(group + "/clump")) return batch;
-  std::vector<std::int64_t> clump(rows);
-  archive.read(group + "/clump", clump, share.box());
-  archive.read(group + "/offset", vectors, share.box(3));
-  for (std::size_t r = 0; r < rows; ++r) {
-    batch.rows[r].clump = clump[r];
-    batch.rows[r].offset = {vectors[3 * r], vectors[3 * r + 1], vectors[3 * r + 2]};
-  }
-  return batch;
-}
-
-// The columns of a clump: of whole numbers, and of reals with their width.
-constexpr std::pair<const char*, std::int64_t ClumpRow::*> clump_numbers[] = {
-    {"clump_id", &ClumpRow::id}, {"clump_members", &ClumpRow::members}, {"clump_motion", &ClumpRow::motion}};
-
-struct RealColumn {
-  const char* name;
-  std::uint64_t width;
-  double* (*values)(ClumpRow&);
-};
-
-constexpr RealColumn clump_reals[] = {
-    {"clump_mass", 1, [](ClumpRow& row) { return &row.mass; }},
-    {"clump_volume", 1, [](ClumpRow& row) { return &row.volume; }},
-    {"clump_moments", 3, [](ClumpRow& row) -> double* { return row.moments; }},
-    {"clump_orientation", 4, [](ClumpRow& row) -> double* { return row.orientation; }},
-    {"clump_centre", 3, [](ClumpRow& row) -> double* { return row.centre; }},
-    {"clump_velocity", 3, [](ClumpRow& row) -> double* { return row.velocity; }},
-    {"clump_angular_momentum", 3, [](ClumpRow& row) -> double* { return row.angular_momentum; }},
-    {"clump_angular_velocity", 3, [](ClumpRow& row) -> double* { return row.angular_velocity; }}};
-
-void write_clumps(ArchiveWriter& archive, const std::string& group, std::vector<ClumpRow> rows, const RowRange& share) {
-  std::sort(rows.begin(), rows.end(), [](const ClumpRow& a, const ClumpRow& b) { return a.id < b.id; });
-  for (const auto& [name, field] : clump_numbers) {
-    std::vector<std::int64_t> values;
-    for (const ClumpRow& row : rows) values.push_back(row.*field);
-    archive.write(group + "/" + name, values, share.box());
-  }
-  for (const RealColumn& column : clump_reals) {
-    std::vector<double> values;
-    for (ClumpRow& row : rows) values.insert(values.end(), column.values(row), column.values(row) + column.width);
-    archive.write(group + "/" + column.name, values, share.box(column.width));
-  }
-}
-
-std::vector<ClumpRow> read_clumps(ArchiveReader& archive, const std::string& group, const RowRange& share) {
-  std::vector<ClumpRow> rows(static_cast<std::size_t>(share.last - share.first));
-  for (const auto& [name, field] : clump_numbers) {
-    std::vector<std::int64_t> values(rows.size());
-    archive.read(group + "/" + name, values, share.box());
-    for (std::size_t r = 0; r < rows.size(); ++r) rows[r].*field = values[r];
-  }
-  for (const RealColumn& column : clump_reals) {
-    std::vector<double> values(column.width * rows.size());
-    archive.read(group + "/" + column.name, values, share.box(column.width));
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(column.width * r), column.width, column.values(rows[r]));
-  }
-  return rows;
-}
 
 // Attached columns of a saved grain.
 int saved_width(const ArchiveReader& archive, const std::string& group) {
@@ -235,87 +114,6 @@ std::optional<std::size_t> row_of(const GrainBatch& batch, GlobalId id) {
 }
 
 }  // namespace
-
-// Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, and bodies and mass of each
-// supply and sink.
-void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& group) const {
-  if (!turnover_.any()) return;
-  const Turnover::State& state = turnover_.state();
-  archive.attribute(group + "/first_supplied_id", turnover_.first_id());
-  archive.attribute(group + "/largest_radius", largest_radius_);
-  archive.attribute(group + "/largest_offset", largest_offset_);
-  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
-    for (std::size_t n = 0; n < tallies->size(); ++n) {
-      archive.attribute(fmt::format("{}/{}_{}_bodies", group, name, n), (*tallies)[n].bodies);
-      archive.attribute(fmt::format("{}/{}_{}_mass", group, name, n), (*tallies)[n].mass);
-    }
-  if (state.returning.empty()) return;
-  // The first rank writes all that return, body by body.
-  const std::string returning = group + "/returning";
-  GrainBatch batch;
-  std::vector<ClumpRow> clumps;
-  std::vector<double> due;
-  std::vector<std::int64_t> sink;
-  for (const ReturningBody& back : state.returning) {
-    batch.rows.insert(batch.rows.end(), back.body.rows.begin(), back.body.rows.end());
-    if (back.body.clump) clumps.push_back(*back.body.clump);
-    due.push_back(back.due);
-    sink.push_back(static_cast<std::int64_t>(back.sink));
-  }
-  const auto all_on_first = [this](std::size_t rows) {
-    RowRange share(static_cast<std::int64_t>(rows), 1, 0);
-    if (rank_of(communicator_) != 0) share.last = 0;
-    return share;
-  };
-  const auto written = [this](auto& values) {
-    if (rank_of(communicator_) != 0) values.clear();
-  };
-  const RowRange rows = all_on_first(batch.rows.size()), clump_rows = all_on_first(clumps.size());
-  const bool with_clumps = !clumps.empty();
-  written(batch.rows);
-  written(clumps);
-  write_grains(archive, returning, batch, rows, 0, true, with_clumps);
-  if (with_clumps) write_clumps(archive, returning, std::move(clumps), clump_rows);
-  write_whole(archive, communicator_, returning + "/due", due);
-  write_whole(archive, communicator_, returning + "/sink", sink);
-}
-
-void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& group) {
-  if (!turnover_.any() || !archive.has(group + "/first_supplied_id")) return;
-  turnover_.set_first_id(archive.integer_attribute(group + "/first_supplied_id"));
-  turnover_.set_largest(archive.real_attribute(group + "/largest_radius"),
-                        archive.real_attribute(group + "/largest_offset"));
-  Turnover::State state = turnover_.state();
-  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
-    for (std::size_t n = 0; n < tallies->size(); ++n) {
-      (*tallies)[n].bodies = archive.integer_attribute(fmt::format("{}/{}_{}_bodies", group, name, n));
-      (*tallies)[n].mass = archive.real_attribute(fmt::format("{}/{}_{}_mass", group, name, n));
-    }
-  state.returning.clear();
-  const std::string returning = group + "/returning";
-  if (archive.has(returning + "/due")) {
-    const auto due = read_whole<double>(archive, returning + "/due");
-    const auto sink = read_whole<std::int64_t>(archive, returning + "/sink");
-    const auto count_of = [&](const char* name) {
-      return static_cast<std::int64_t>(archive.shape(returning + name)[0]);
-    };
-    const GrainBatch batch = read_grains(archive, returning, RowRange(count_of("/radius"), 1, 0), 0);
-    std::vector<ClumpRow> clumps;
-    if (archive.has(returning + "/clump_id"))
-      clumps = read_clumps(archive, returning, RowRange(count_of("/clump_id"), 1, 0));
-    for (const GrainRow& row : batch.rows) {
-      if (row.clump < 0 || row.id == row.clump) {
-        const std::size_t n = state.returning.size();
-        state.returning.push_back({{}, static_cast<std::size_t>(sink.at(n)), due.at(n)});
-        const auto clump =
-            std::find_if(clumps.begin(), clumps.end(), [&](const ClumpRow& c) { return c.id == row.id; });
-        if (row.clump >= 0) state.returning.back().body.clump = *clump;
-      }
-      state.returning.back().body.rows.push_back(row);
-    }
-  }
-  turnover_.set_state(std::move(state));
-}
 
 void GrainDynamics::save(ArchiveWriter& archive, const std::string& group) const {
   const int ranks = size_of(communicator_);

@@ -1,11 +1,14 @@
 // Grains that come into the box and leave it (dem/supply): the part of GrainDynamics that changes who is there.
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
+#include "core/state/whole_dataset.hpp"
 #include "dem/grain_dynamics.hpp"
+#include "dem/ranks/grain_archive.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace thalweg::dem {
 
@@ -140,6 +143,87 @@ std::vector<Diagnostic> GrainDynamics::turnover_diagnostics() const {
   std::vector<Diagnostic> diagnostics{{"grains", "1", static_cast<double>(body_count())}};
   for (const Diagnostic& diagnostic : turnover_.diagnostics(time())) diagnostics.push_back(diagnostic);
   return diagnostics;
+}
+
+// Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, and bodies and mass of each
+// supply and sink.
+void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& group) const {
+  if (!turnover_.any()) return;
+  const Turnover::State& state = turnover_.state();
+  archive.attribute(group + "/first_supplied_id", turnover_.first_id());
+  archive.attribute(group + "/largest_radius", largest_radius_);
+  archive.attribute(group + "/largest_offset", largest_offset_);
+  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
+    for (std::size_t n = 0; n < tallies->size(); ++n) {
+      archive.attribute(fmt::format("{}/{}_{}_bodies", group, name, n), (*tallies)[n].bodies);
+      archive.attribute(fmt::format("{}/{}_{}_mass", group, name, n), (*tallies)[n].mass);
+    }
+  if (state.returning.empty()) return;
+  // The first rank writes all that return, body by body.
+  const std::string returning = group + "/returning";
+  GrainBatch batch;
+  std::vector<ClumpRow> clumps;
+  std::vector<double> due;
+  std::vector<std::int64_t> sink;
+  for (const ReturningBody& back : state.returning) {
+    batch.rows.insert(batch.rows.end(), back.body.rows.begin(), back.body.rows.end());
+    if (back.body.clump) clumps.push_back(*back.body.clump);
+    due.push_back(back.due);
+    sink.push_back(static_cast<std::int64_t>(back.sink));
+  }
+  const auto all_on_first = [this](std::size_t rows) {
+    RowRange share(static_cast<std::int64_t>(rows), 1, 0);
+    if (rank_of(communicator_) != 0) share.last = 0;
+    return share;
+  };
+  const auto written = [this](auto& values) {
+    if (rank_of(communicator_) != 0) values.clear();
+  };
+  const RowRange rows = all_on_first(batch.rows.size()), clump_rows = all_on_first(clumps.size());
+  const bool with_clumps = !clumps.empty();
+  written(batch.rows);
+  written(clumps);
+  write_grains(archive, returning, batch, rows, 0, true, with_clumps);
+  if (with_clumps) write_clumps(archive, returning, std::move(clumps), clump_rows);
+  write_whole(archive, communicator_, returning + "/due", due);
+  write_whole(archive, communicator_, returning + "/sink", sink);
+}
+
+void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& group) {
+  if (!turnover_.any() || !archive.has(group + "/first_supplied_id")) return;
+  turnover_.set_first_id(archive.integer_attribute(group + "/first_supplied_id"));
+  turnover_.set_largest(archive.real_attribute(group + "/largest_radius"),
+                        archive.real_attribute(group + "/largest_offset"));
+  Turnover::State state = turnover_.state();
+  for (const auto& [name, tallies] : {std::pair{"supply", &state.supplied}, std::pair{"sink", &state.taken}})
+    for (std::size_t n = 0; n < tallies->size(); ++n) {
+      (*tallies)[n].bodies = archive.integer_attribute(fmt::format("{}/{}_{}_bodies", group, name, n));
+      (*tallies)[n].mass = archive.real_attribute(fmt::format("{}/{}_{}_mass", group, name, n));
+    }
+  state.returning.clear();
+  const std::string returning = group + "/returning";
+  if (archive.has(returning + "/due")) {
+    const auto due = read_whole<double>(archive, returning + "/due");
+    const auto sink = read_whole<std::int64_t>(archive, returning + "/sink");
+    const auto count_of = [&](const char* name) {
+      return static_cast<std::int64_t>(archive.shape(returning + name)[0]);
+    };
+    const GrainBatch batch = read_grains(archive, returning, RowRange(count_of("/radius"), 1, 0), 0);
+    std::vector<ClumpRow> clumps;
+    if (archive.has(returning + "/clump_id"))
+      clumps = read_clumps(archive, returning, RowRange(count_of("/clump_id"), 1, 0));
+    for (const GrainRow& row : batch.rows) {
+      if (row.clump < 0 || row.id == row.clump) {
+        const std::size_t n = state.returning.size();
+        state.returning.push_back({{}, static_cast<std::size_t>(sink.at(n)), due.at(n)});
+        const auto clump =
+            std::find_if(clumps.begin(), clumps.end(), [&](const ClumpRow& c) { return c.id == row.id; });
+        if (row.clump >= 0) state.returning.back().body.clump = *clump;
+      }
+      state.returning.back().body.rows.push_back(row);
+    }
+  }
+  turnover_.set_state(std::move(state));
 }
 
 }  // namespace thalweg::dem
