@@ -33,7 +33,7 @@ struct Command {
   bool solve = false;      // of check
   Experiment experiment;   // of create
   ClumpOrder clump_order;
-  std::string line;        // the command as given
+  std::string line;  // the command as given
 };
 
 struct CommandLine {
