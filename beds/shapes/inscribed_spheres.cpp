@@ -41,9 +41,9 @@ InscribedSpheres::InscribedSpheres(const TriangleMesh& mesh, const MeshDistance&
 }
 
 Vec3 InscribedSpheres::place(std::int64_t node) const {
-  const std::int64_t row = node / nodes_[0];
+  const std::int64_t row = node / nodes_[0], plane = row / nodes_[1];
   return origin_ + spacing_ * Vec3(static_cast<double>(node % nodes_[0]), static_cast<double>(row % nodes_[1]),
-                                   static_cast<double>(row / nodes_[1]));
+                                   static_cast<double>(plane));
 }
 
 // Lines along x through the nodes, moved aside by so little that they meet no edge of a surface made on this grid.
