@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the surfaces of this folder, each of the volume of a sphere of diameter 1: `make_shapes.py [FOLDER]`."""
-import sys
+"""Writes the surfaces of this folder, each of the volume of a sphere of diameter 1."""
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -78,7 +78,9 @@ def write_binary_stl(path, points, triangles):
 
 
 def main():
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).parent, help="default: that of the script")
+    folder = parser.parse_args().folder
     directions, triangles = icosphere(3)
     shapes = {
         "prolate": ellipsoid(directions, (2.0, 1.0, 1.0)),

@@ -1,11 +1,8 @@
 #!/usr/bin/env python3
-"""Discharge of a bin whose floor has a slot across it, beside Beverloo's law.
-
-Usage: slots.py THALWEG FOLDER    runs slot.yaml with five slots below FOLDER and prints a table
-"""
+"""Discharge of a bin whose floor has a slot across it, beside Beverloo's law."""
+import argparse
 import csv
 import subprocess
-import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -25,7 +22,7 @@ def run(thalweg, folder, slot):
 
 def discharge(folder):
     """kg/s, from the mass that has passed through the sink."""
-    with open(folder / "series.csv", newline="") as file:
+    with open(folder / "series.csv", newline="", encoding="utf-8") as file:
         header, *rows = csv.reader(file)
     names = [name.split()[0] for name in header]
     time, mass = names.index("time"), names.index("recirculated_mass")
@@ -34,7 +31,11 @@ def discharge(folder):
 
 
 def main():
-    thalweg, folder = sys.argv[1], Path(sys.argv[2])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("thalweg", help="the program")
+    parser.add_argument("folder", type=Path, help="of the five runs")
+    arguments = parser.parse_args()
+    thalweg, folder = arguments.thalweg, arguments.folder
     print("slot (diameters)  discharge (kg/s)  Beverloo's law")
     for slot in SLOTS:
         run(thalweg, folder / f"slot_{slot:.3f}", slot)
