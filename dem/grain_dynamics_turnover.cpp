@@ -23,9 +23,7 @@ bool GrainDynamics::turn_over(const std::function<Vec3(const Vec3&)>& fluid_velo
   std::vector<TravellingBody> leaving;
   if (some_leave) leaving = take_leaving(sink);
   for (const TravellingBody& body : leaving) {
-    const Vec3 centre =
-        body.clump ? Vec3(body.clump->centre) : Vec3(body.rows.front().value[GrainRow::position].data());
-    turnover_.leave(body, static_cast<std::size_t>(turnover_.sink_at(centre)), time());
+    turnover_.leave(body, static_cast<std::size_t>(turnover_.sink_at(body.centre())), time());
   }
 
   std::vector<TravellingBody> arriving;
@@ -98,8 +96,7 @@ void GrainDynamics::exchange_bodies(std::span<const TravellingBody> leaving, std
 
   for (std::size_t n = 0; n < arriving.size(); ++n) {
     TravellingBody body = arriving[n];
-    const Vec3 centre =
-        body.clump ? Vec3(body.clump->centre) : Vec3(body.rows.front().value[GrainRow::position].data());
+    const Vec3 centre = body.centre();
     if (decomposition_.owner_of(centre) != rank_of(communicator_)) continue;
     const Vec3 velocity = by[n]->velocity  ? *by[n]->velocity
                           : fluid_velocity ? fluid_velocity(centre)

@@ -60,6 +60,14 @@ double least_contact_mass(double mass, const Vec3& moments, std::span<const Vec3
   return 1.0 / (1.0 / mass + largest);
 }
 
+// Members about the centre of mass in the frame of these axes, and the sphere that holds them.
+static void move_members(ClumpShape& shape, const Eigen::Matrix3d& axes) {
+  for (PlacedSphere& member : shape.members) {
+    member.position = axes.transpose() * (member.position - shape.centre);
+    shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);
+  }
+}
+
 ClumpShape clump_shape(std::span<const PlacedSphere> members, double thickness) {
   check_members(members, thickness);
   const bool disks = thickness > 0.0;
@@ -80,10 +88,7 @@ ClumpShape clump_shape(std::span<const PlacedSphere> members, double thickness) 
     const Eigen::Quaterniond q(axes);
     shape.principal = normalised({q.w(), q.x(), q.y(), q.z()});
   }
-  for (PlacedSphere& member : shape.members) {
-    member.position = axes.transpose() * (member.position - shape.centre);
-    shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);
-  }
+  move_members(shape, axes);
   return shape;
 }
 
@@ -108,10 +113,7 @@ ClumpShape clump_shape(std::span<const PlacedSphere> members, const BodyMoments&
         shape.moments[0], shape.moments[1], shape.moments[2]));
   const Eigen::Quaterniond q(axes);
   shape.principal = normalised({q.w(), q.x(), q.y(), q.z()});
-  for (PlacedSphere& member : shape.members) {
-    member.position = axes.transpose() * (member.position - shape.centre);
-    shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);
-  }
+  move_members(shape, axes);
   return shape;
 }
 

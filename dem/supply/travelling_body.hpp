@@ -18,6 +18,9 @@ struct TravellingBody {
 
   GlobalId id() const { return rows.front().id; }
   double mass() const { return rows.front().mass; }  // kg, of a clump the whole
+  Vec3 centre() const {                              // m
+    return clump ? Vec3(clump->centre) : Vec3(rows.front().value[GrainRow::position].data());
+  }
   // m, from the centre of the body to that of row r, as it is turned
   Vec3 arm(std::size_t r) const;
   double reach() const;  // m, radius of the sphere about the centre that holds all of it
