@@ -53,10 +53,12 @@ Failure failure() {
 void complain(const std::string& message) { std::fprintf(stderr, "thalweg: %s\n", message.c_str()); }
 
 // Ends the program after an error: in good order if it met every rank, else by force, since the others are waiting.
+// The error is then the only thing said: mpirun sends SIGTERM to the last ranks to leave once the first has failed.
 int end_with(const Failure& failed, FailureBarrier& failures, bool prints) {
   const bool together = failures.all_ranks_failed(seconds_to_wait_for_others);
   if (prints || !together) complain(failed.message);
   if (!together) MPI_Abort(MPI_COMM_WORLD, failed.code);
+  loop::end_on_stop_signals(failed.code, false);
   return failed.code;
 }
 
