@@ -249,10 +249,17 @@ private:
   bool rebuild_for(const Outlook& outlook, int sub_steps);
   void rebuild();
   void rebuild_with(ContactHistories histories);
-  std::vector<int> sink_of_slots() const;
-  std::vector<TravellingBody> take_leaving(const std::vector<int>& sink) const;
-  void exchange_bodies(std::span<const TravellingBody> leaving, std::span<const TravellingBody> arriving,
-                       const std::function<Vec3(const Vec3&)>& fluid_velocity, std::span<const Entrance* const> by);
+  // A body in its place. Its velocity is this one (m/s), or else its own if it keeps its motion, or else the fluid's.
+  struct Arrival {
+    TravellingBody body;
+    std::optional<Vec3> velocity;
+    bool keeps_motion;
+  };
+  std::vector<char> slots_in_sinks() const;
+  std::vector<TravellingBody> take_leaving(std::span<const char> leaves) const;
+  void exchange_bodies(std::span<const char> leaves, std::span<const TravellingBody> leaving,
+                       std::span<const Arrival> arriving, const std::function<Vec3(const Vec3&)>& fluid_velocity);
+  void count_body(const TravellingBody& body, int sign);
   void save_turnover(ArchiveWriter& archive, const std::string& group) const;
   void load_turnover(ArchiveReader& archive, const std::string& group);
   void move_cuts();

@@ -18,112 +18,80 @@ bool GrainDynamics::turn_over(const std::function<Vec3(const Vec3&)>& fluid_velo
   wrap_positions();
   // What leaves now comes in again in the next step at the earliest, so that everyone sees it gone.
   const std::vector<PlaceSeeker> seekers = turnover_.due(time());
-  const std::vector<int> sink = sink_of_slots();
-  const bool some_leave = any_rank(communicator_, std::any_of(sink.begin(), sink.end(), [](int s) { return s >= 0; }));
+  const std::vector<char> leaves = slots_in_sinks();
+  const bool some_leave =
+      any_rank(communicator_, std::any_of(leaves.begin(), leaves.end(), [](char l) { return l != 0; }));
   std::vector<TravellingBody> leaving;
-  if (some_leave) leaving = take_leaving(sink);
-  for (const TravellingBody& body : leaving) {
+  if (some_leave) leaving = take_leaving(leaves);
+  for (const TravellingBody& body : leaving)
     turnover_.leave(body, static_cast<std::size_t>(turnover_.sink_at(body.centre())), time());
-  }
 
-  std::vector<TravellingBody> arriving;
-  std::vector<const Entrance*> by;
+  std::vector<Arrival> arriving;
   if (!seekers.empty()) {
-    std::vector<char> gone(store_.owned);
-    std::transform(sink.begin(), sink.end(), gone.begin(), [](int s) { return static_cast<char>(s >= 0); });
-    const std::vector<std::optional<Vec3>> places =
-        free_places(seekers, store_, gone, {box_, planes_, solids_, parameters_.solids},
+    const std::vector<std::optional<FreePlace>> places =
+        free_places(seekers, store_, leaves, {box_, planes_, solids_, parameters_.solids},
                     static_cast<std::uint64_t>(steps_done_), communicator_);
     turnover_.enter(seekers, places);
     for (std::size_t n = 0; n < seekers.size(); ++n) {
       if (!places[n]) continue;
-      arriving.push_back(seekers[n].body);
-      arriving.back().enter(*places[n], Vec3::Zero(), box_);
-      by.push_back(seekers[n].entrance);
+      arriving.push_back({seekers[n].body, seekers[n].entrance->velocity, places[n]->at_own_height});
+      arriving.back().body.place(places[n]->centre, box_);
     }
   }
   if (leaving.empty() && arriving.empty()) return false;
-  exchange_bodies(leaving, arriving, fluid_velocity, by);
+  exchange_bodies(leaves, leaving, arriving, fluid_velocity);
   return true;
 }
 
-// The sink that each owned grain is in, of a clump's member that of its clump; -1: it stays.
-std::vector<int> GrainDynamics::sink_of_slots() const {
-  std::vector<int> sink(store_.owned, -1);
+// A mark for each owned grain: 1 if it is in a sink, a member if its clump is.
+std::vector<char> GrainDynamics::slots_in_sinks() const {
+  const auto in_sink = [this](const Vec3& centre) { return static_cast<char>(turnover_.sink_at(centre) >= 0); };
+  std::vector<char> marks(store_.owned);
   for (std::size_t s = 0; s < store_.owned; ++s)
-    if (store_.clump[s] < 0 && !holds_translation(store_.motion[s])) sink[s] = turnover_.sink_at(store_.position[s]);
+    if (store_.clump[s] < 0 && !holds_translation(store_.motion[s])) marks[s] = in_sink(store_.position[s]);
   for (std::size_t n = 0; n < clumps_.size(); ++n)
     if (!holds_translation(clumps_[n].motion))
-      std::fill_n(sink.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)), clumps_.member_count(n),
-                  turnover_.sink_at(clumps_[n].centre));
-  return sink;
+      std::fill_n(marks.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)), clumps_.member_count(n),
+                  in_sink(clumps_[n].centre));
+  return marks;
 }
 
 // The bodies of all ranks that leave, in order of id. Collective.
-std::vector<TravellingBody> GrainDynamics::take_leaving(const std::vector<int>& sink) const {
-  const GrainBatch all = owned_grains(store_);
-  std::vector<GrainRow> rows;
+std::vector<TravellingBody> GrainDynamics::take_leaving(std::span<const char> leaves) const {
   std::vector<ClumpRow> clumps;
-  for (std::size_t s = 0; s < store_.owned; ++s)
-    if (sink[s] >= 0) rows.push_back(all.rows[s]);
   for (std::size_t n = 0; n < clumps_.size(); ++n)
-    if (sink[clumps_.first_slot(n)] >= 0) clumps.push_back(row_of(clumps_[n]));
-  return gathered_bodies(std::move(rows), std::move(clumps), communicator_);
+    if (leaves[clumps_.first_slot(n)] != 0) clumps.push_back(row_of(clumps_[n]));
+  return gathered_bodies(marked_grains(store_, leaves).rows, std::move(clumps), communicator_);
 }
 
-// Takes bodies out of the store and puts others in, each on the rank of its centre; by: the entrance of each.
-void GrainDynamics::exchange_bodies(std::span<const TravellingBody> leaving, std::span<const TravellingBody> arriving,
-                                    const std::function<Vec3(const Vec3&)>& fluid_velocity,
-                                    std::span<const Entrance* const> by) {
+// Takes the marked grains, those of the bodies that leave, out of the store and puts others in, each on the rank of its
+// centre.
+void GrainDynamics::exchange_bodies(std::span<const char> leaves, std::span<const TravellingBody> leaving,
+                                    std::span<const Arrival> arriving,
+                                    const std::function<Vec3(const Vec3&)>& fluid_velocity) {
   ContactHistories histories = histories_of(list_, store_, planes_.size());
-  std::vector<GlobalId> gone;  // ascending
-  for (const TravellingBody& body : leaving)
-    for (const GrainRow& row : body.rows) gone.push_back(row.id);
-  const auto is_gone = [&gone](GlobalId id) { return std::binary_search(gone.begin(), gone.end(), id); };
-
-  const auto width = static_cast<std::size_t>(store_.attached_width);
-  const GrainBatch before = owned_grains(store_);
-  GrainBatch batch;
-  for (std::size_t s = 0; s < before.rows.size(); ++s) {
-    if (is_gone(before.rows[s].id)) continue;
-    batch.rows.push_back(before.rows[s]);
-    const auto first = before.attached.begin() + static_cast<std::ptrdiff_t>(s * width);
-    batch.attached.insert(batch.attached.end(), first, first + static_cast<std::ptrdiff_t>(width));
-  }
   std::vector<Clump> clumps;
   for (std::size_t n = 0; n < clumps_.size(); ++n)
-    if (!is_gone(clumps_[n].id)) clumps.push_back(clumps_[n]);
-
-  for (std::size_t n = 0; n < arriving.size(); ++n) {
-    TravellingBody body = arriving[n];
+    if (leaves[clumps_.first_slot(n)] == 0) clumps.push_back(clumps_[n]);
+  GrainBatch batch;
+  for (const Arrival& arrival : arriving) {
+    TravellingBody body = arrival.body;
     const Vec3 centre = body.centre();
     if (decomposition_.owner_of(centre) != rank_of(communicator_)) continue;
-    const Vec3 velocity = by[n]->velocity  ? *by[n]->velocity
-                          : fluid_velocity ? fluid_velocity(centre)
-                                           : Vec3(Vec3::Zero());
-    body.enter(centre, velocity, box_);
+    if (arrival.velocity)
+      body.set_velocity(*arrival.velocity);
+    else if (!arrival.keeps_motion)
+      body.set_velocity(fluid_velocity ? fluid_velocity(centre) : Vec3(Vec3::Zero()));
     batch.rows.insert(batch.rows.end(), body.rows.begin(), body.rows.end());
-    batch.attached.resize(batch.rows.size() * width, 0.0);
     if (body.clump) clumps.push_back(clump_of(*body.clump));
   }
-  sort_by_id(batch, store_.attached_width);
+  batch.attached.resize(batch.rows.size() * store_.attached_width, 0.0);
+  sort_by_id(batch, static_cast<int>(store_.attached_width));
   std::sort(clumps.begin(), clumps.end(), [](const Clump& a, const Clump& b) { return a.id < b.id; });
 
-  std::int64_t rows = 0, members = 0, clump_change = 0;
-  const auto count = [&](std::span<const TravellingBody> bodies, int sign) {
-    for (const TravellingBody& body : bodies) {
-      const auto rows_of_body = static_cast<std::int64_t>(body.rows.size());
-      rows += sign * rows_of_body;
-      if (body.clump) members += sign * rows_of_body, clump_change += sign;
-    }
-  };
-  count(arriving, 1);
-  count(leaving, -1);
-  global_count_ += rows;
-  member_count_ += members;
-  clump_count_ += clump_change;
-
-  replace_owned(store_, batch);
+  for (const Arrival& arrival : arriving) count_body(arrival.body, 1);
+  for (const TravellingBody& body : leaving) count_body(body, -1);
+  replace_marked(store_, leaves, batch);
   clumps_.replace(std::move(clumps));
   clumps_.find_members(store_);
   rebuild_with(std::move(histories));
@@ -133,6 +101,13 @@ void GrainDynamics::exchange_bodies(std::span<const TravellingBody> leaving, std
         fmt::format("There are {} grains and members of clumps in the box, but {} by the balance of supplies "
                     "and sinks; this is a fault of the program.",
                     here, global_count_));
+}
+
+// Enters a body that comes (sign 1) or goes (-1) in the counts of all ranks.
+void GrainDynamics::count_body(const TravellingBody& body, int sign) {
+  const std::int64_t rows = sign * static_cast<std::int64_t>(body.rows.size());
+  global_count_ += rows;
+  if (body.clump) member_count_ += rows, clump_count_ += sign;
 }
 
 std::vector<Diagnostic> GrainDynamics::turnover_diagnostics() const {

@@ -4,15 +4,12 @@ namespace thalweg::beds {
 
 // Where grains come in, and how fast.
 static void describe_entrance(SectionVisitor& visit, RegionKeys& region, std::optional<Vec3>& velocity,
-                              std::int64_t& seed) {
+                              std::int64_t& seed, const char* velocity_meaning) {
   visit.section(
       "region", region,
       {.meaning = "where they come in: their centres, each at a random free place; where none is free they wait",
        .required = true});
-  visit.vec3("velocity", velocity,
-             {.unit = "m/s",
-              .meaning = "with which they come in; default: that of the fluid there, else zero",
-              .example = 0.0});
+  visit.vec3("velocity", velocity, {.unit = "m/s", .meaning = velocity_meaning, .example = 0.0});
   visit.integer("seed", seed, {.meaning = "seed of the random places", .at_least = 0});
 }
 
@@ -32,12 +29,16 @@ void describe(SectionVisitor& visit, SupplyKeys& supply) {
              {.unit = "s", .meaning = "time of the end; default: that of the run", .above = 0.0, .example = 10.0});
   visit.require(!supply.until || *supply.until > supply.from, "until",
                 "the supply ends before it begins; give a time in s after from");
-  describe_entrance(visit, supply.region, supply.velocity, supply.seed);
+  describe_entrance(visit, supply.region, supply.velocity, supply.seed,
+                    "with which they come in; default: that of the fluid there, else zero");
 }
 
 static void describe(SectionVisitor& visit, RecirculationKeys& recirculation) {
   visit.real("delay", recirculation.delay, {.unit = "s", .meaning = "until they come in again", .at_least = 0.0});
-  describe_entrance(visit, recirculation.region, recirculation.velocity, recirculation.seed);
+  describe_entrance(
+      visit, recirculation.region, recirculation.velocity, recirculation.seed,
+      "with which they come in; default: their own if they come in at the height at which they left, else "
+      "as of a supply");
 }
 
 void describe(SectionVisitor& visit, SinkKeys& sink) {

@@ -50,6 +50,13 @@ GrainBatch owned_grains(const GrainStore& store) {
   return batch;
 }
 
+GrainBatch marked_grains(const GrainStore& store, std::span<const char> marks) {
+  GrainBatch batch;
+  for (std::size_t s = 0; s < store.owned; ++s)
+    if (marks[s] != 0) add_grain(store, s, batch);
+  return batch;
+}
+
 void replace_owned(GrainStore& store, const GrainBatch& batch) {
   store.clear();
   store.reserve(batch.rows.size());
@@ -80,37 +87,41 @@ GrainBatch exchange_grains(MPI_Comm communicator, GrainBatch batch, const std::v
   return arrived;
 }
 
-void move_grains(MPI_Comm communicator, GrainStore& store, const std::vector<int>& owner) {
-  const int me = rank_of(communicator);
-  GrainBatch leaving;
-  std::vector<int> destination;
-  for (std::size_t s = 0; s < store.owned; ++s)
-    if (owner[s] != me) {
-      add_grain(store, s, leaving);
-      destination.push_back(owner[s]);
-    }
-  const bool none_leave = leaving.rows.empty();
-  const GrainBatch arrived =
-      exchange_grains(communicator, std::move(leaving), destination, static_cast<int>(store.attached_width));
-  if (none_leave && arrived.rows.empty()) return store.drop_ghosts();
+void replace_marked(GrainStore& store, std::span<const char> marks, const GrainBatch& batch) {
+  const auto width = static_cast<std::ptrdiff_t>(store.attached_width);
   GrainBatch all;
-  all.rows.reserve(store.owned - destination.size() + arrived.rows.size());
+  all.rows.reserve(store.owned + batch.rows.size());
   all.attached.reserve(all.rows.capacity() * store.attached_width);
-  std::size_t next = 0;  // of those that have arrived
-  const auto add_arrived_below = [&](GlobalId id) {
-    for (; next < arrived.rows.size() && arrived.rows[next].id < id; ++next) {
-      all.rows.push_back(arrived.rows[next]);
-      const auto first = arrived.attached.begin() + static_cast<std::ptrdiff_t>(next * store.attached_width);
-      all.attached.insert(all.attached.end(), first, first + static_cast<std::ptrdiff_t>(store.attached_width));
+  std::size_t next = 0;  // of the batch
+  const auto add_below = [&](GlobalId id) {
+    for (; next < batch.rows.size() && batch.rows[next].id < id; ++next) {
+      all.rows.push_back(batch.rows[next]);
+      const auto first = batch.attached.begin() + static_cast<std::ptrdiff_t>(next) * width;
+      all.attached.insert(all.attached.end(), first, first + width);
     }
   };
   for (std::size_t s = 0; s < store.owned; ++s) {
-    if (owner[s] != me) continue;
-    add_arrived_below(store.id[s]);
+    if (marks[s] != 0) continue;
+    add_below(store.id[s]);
     add_grain(store, s, all);
   }
-  add_arrived_below(std::numeric_limits<GlobalId>::max());
+  add_below(std::numeric_limits<GlobalId>::max());
   replace_owned(store, all);
+}
+
+void move_grains(MPI_Comm communicator, GrainStore& store, const std::vector<int>& owner) {
+  const int me = rank_of(communicator);
+  std::vector<char> leaves(store.owned);
+  std::vector<int> destination;
+  for (std::size_t s = 0; s < store.owned; ++s)
+    if (owner[s] != me) {
+      leaves[s] = 1;
+      destination.push_back(owner[s]);
+    }
+  const GrainBatch arrived =
+      exchange_grains(communicator, marked_grains(store, leaves), destination, static_cast<int>(store.attached_width));
+  if (destination.empty() && arrived.rows.empty()) return store.drop_ghosts();
+  replace_marked(store, leaves, arrived);
 }
 
 }  // namespace thalweg::dem

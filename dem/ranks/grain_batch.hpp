@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace thalweg::dem {
@@ -35,8 +36,15 @@ struct GrainBatch {
 // Copies of the owned grains, in their order.
 GrainBatch owned_grains(const GrainStore& store);
 
+// Copies of those owned grains whose mark (one for each) is not zero, in their order.
+GrainBatch marked_grains(const GrainStore& store, std::span<const char> marks);
+
 // Replaces all grains of the store by those of the batch; no ghosts. Rows must be sorted by id.
 void replace_owned(GrainStore& store, const GrainBatch& batch);
+
+// Takes the owned grains whose mark is not zero out of the store and puts the grains of the batch, sorted by id, in.
+// The store's grains stay sorted by id; no ghosts.
+void replace_marked(GrainStore& store, std::span<const char> marks, const GrainBatch& batch);
 
 // attached_width: values a row.
 void sort_by_id(GrainBatch& batch, int attached_width);

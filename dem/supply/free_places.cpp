@@ -13,6 +13,8 @@ namespace {
 using Mask = std::uint32_t;
 static_assert(places_tried <= 32);
 
+bool tries_own_height(const PlaceSeeker& seeker, int attempt) { return seeker.height && attempt < places_tried / 2; }
+
 Vec3 place_tried(const PlaceSeeker& seeker, std::uint64_t draw, int attempt) {
   const Zone& zone = seeker.entrance->zone;
   Vec3 place;
@@ -23,6 +25,7 @@ Vec3 place_tried(const PlaceSeeker& seeker, std::uint64_t draw, int attempt) {
                                         static_cast<std::uint64_t>(seeker.body.id()), number);
     place[axis] = zone.lower[axis] + share * (zone.upper[axis] - zone.lower[axis]);
   }
+  if (tries_own_height(seeker, attempt)) place.z() = *seeker.height;
   return place;
 }
 
@@ -81,22 +84,22 @@ Mask blocked_places(const PlaceSeeker& seeker, const GrainStore& store, std::spa
 
 }  // namespace
 
-std::vector<std::optional<Vec3>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
-                                             std::span<const char> leaving, const PlaceSurroundings& surroundings,
-                                             std::uint64_t draw, MPI_Comm communicator) {
+std::vector<std::optional<FreePlace>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
+                                                  std::span<const char> leaving, const PlaceSurroundings& surroundings,
+                                                  std::uint64_t draw, MPI_Comm communicator) {
   std::vector<Mask> blocked;
   for (const PlaceSeeker& seeker : seekers)
     blocked.push_back(blocked_places(seeker, store, leaving, surroundings, draw));
   MPI_Allreduce(MPI_IN_PLACE, blocked.data(), mpi_count(blocked.size()), MPI_UINT32_T, MPI_BOR, communicator);
 
-  std::vector<std::optional<Vec3>> places(seekers.size());
+  std::vector<std::optional<FreePlace>> places(seekers.size());
   const auto meets_earlier = [&](std::size_t n, const Vec3& place) {
     for (std::size_t m = 0; m < n; ++m) {
       if (!places[m]) continue;
       const TravellingBody& other = seekers[m].body;
       for (std::size_t r = 0; r < other.rows.size(); ++r)
-        if (overlaps(seekers[n].body, place, surroundings.box.wrapped(*places[m] + other.arm(r)), other.rows[r].radius,
-                     surroundings.box))
+        if (overlaps(seekers[n].body, place, surroundings.box.wrapped(places[m]->centre + other.arm(r)),
+                     other.rows[r].radius, surroundings.box))
           return true;
     }
     return false;
@@ -106,7 +109,8 @@ std::vector<std::optional<Vec3>> free_places(std::span<const PlaceSeeker> seeker
     if (std::find(stopped.begin(), stopped.end(), seekers[n].queue) != stopped.end()) continue;
     for (int attempt = 0; attempt < places_tried && !places[n]; ++attempt) {
       const Vec3 place = place_tried(seekers[n], draw, attempt);
-      if ((blocked[n] >> attempt & 1u) == 0 && !meets_earlier(n, place)) places[n] = place;
+      if ((blocked[n] >> attempt & 1u) == 0 && !meets_earlier(n, place))
+        places[n] = FreePlace{place, tries_own_height(seekers[n], attempt)};
     }
     if (!places[n]) stopped.push_back(seekers[n].queue);
   }

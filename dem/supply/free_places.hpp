@@ -33,17 +33,23 @@ struct PlaceSurroundings {
 struct PlaceSeeker {
   TravellingBody body;
   const Entrance* entrance;
+  std::optional<double> height;  // m, at which it tries first
   // Bodies in one queue come in one after the other: where one finds no place, those behind it wait, too.
   int queue;
 };
 
-// Points of its entrance that a body tries in one step.
+// Points of its entrance that a body tries in one step; the first half of them are at its own height if it has one.
 inline constexpr int places_tried = 16;
 
-// For each seeker a place (m) for its centre; none: it must wait. store: the grains of this rank, without those that
+struct FreePlace {
+  Vec3 centre;         // m
+  bool at_own_height;  // that of the seeker
+};
+
+// For each seeker a place for its centre; none: it must wait. store: the grains of this rank, without those that
 // leave (leaving[slot] != 0). draw: makes the random points of this step others than those of other steps. Collective.
-std::vector<std::optional<Vec3>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
-                                             std::span<const char> leaving, const PlaceSurroundings& surroundings,
-                                             std::uint64_t draw, MPI_Comm communicator);
+std::vector<std::optional<FreePlace>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
+                                                  std::span<const char> leaving, const PlaceSurroundings& surroundings,
+                                                  std::uint64_t draw, MPI_Comm communicator);
 
 }  // namespace thalweg::dem

@@ -23,8 +23,10 @@ struct Zone {
 
 // Place where grains and clumps come in: each at a random point of the zone where it touches nothing.
 struct Entrance {
-  Zone zone;                     // of their centres
-  std::optional<Vec3> velocity;  // m/s; none: that of the fluid there, or at rest
+  Zone zone;  // of their centres
+  // m/s; none: that with which a body left the box, if it comes in again at the height at which it left; else that of
+  // the fluid there, or at rest
+  std::optional<Vec3> velocity;
   std::int64_t seed = 1;
 };
 

@@ -35,14 +35,23 @@ void TravellingBody::renumber(GlobalId first_id) {
   if (clump) clump->id = first_id;
 }
 
-void TravellingBody::enter(const Vec3& centre, const Vec3& velocity, const PeriodicBox& box) {
+void TravellingBody::place(const Vec3& centre, const PeriodicBox& box) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    rows[r].value = {};
-    rows[r].value[GrainRow::position] = plain(box.wrapped(centre + arm(r)));
-    rows[r].value[GrainRow::velocity] = plain(velocity);
+    auto& value = rows[r].value;
+    value[GrainRow::position] = plain(box.wrapped(centre + arm(r)));
+    for (const auto force :
+         {GrainRow::contact_force, GrainRow::contact_torque, GrainRow::load_force, GrainRow::load_torque})
+      value[force] = {};
+  }
+  if (clump) set(box.wrapped(centre), clump->centre);
+}
+
+void TravellingBody::set_velocity(const Vec3& velocity) {
+  for (GrainRow& row : rows) {
+    row.value[GrainRow::velocity] = plain(velocity);
+    row.value[GrainRow::angular_velocity] = {};
   }
   if (!clump) return;
-  set(box.wrapped(centre), clump->centre);
   set(velocity, clump->velocity);
   set(Vec3::Zero(), clump->angular_momentum);
   set(Vec3::Zero(), clump->angular_velocity);

@@ -26,8 +26,9 @@ struct TravellingBody {
   double reach() const;  // m, radius of the sphere about the centre that holds all of it
 
   void renumber(GlobalId first_id);  // gives it the ids from this one on
-  // Puts it at a place (m) with a velocity (m/s), without spin and without forces.
-  void enter(const Vec3& centre, const Vec3& velocity, const PeriodicBox& box);
+  // Puts its centre at a place (m), with the motion that it has and without forces.
+  void place(const Vec3& centre, const PeriodicBox& box);
+  void set_velocity(const Vec3& velocity);  // m/s; it has no spin then
 };
 
 // The bodies that these seeds make, as they lie.

@@ -23,6 +23,13 @@ void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& wha
         fmt::format("The zone of {} does not lie in the box with its lower corner below the upper one.", what));
 }
 
+// The height (m) at which a body left the box, if its entrance has that height, too.
+std::optional<double> height_within(const Zone& zone, const TravellingBody& body) {
+  const double height = body.centre().z();
+  if (height < zone.lower.z() || height > zone.upper.z()) return std::nullopt;
+  return height;
+}
+
 }  // namespace
 
 void check(std::span<const Supply> supplies, std::span<const Sink> sinks, const PeriodicBox& box) {
@@ -81,7 +88,9 @@ std::vector<PlaceSeeker> Turnover::due(double time) const {
   int queue = 0;
   for (const ReturningBody& back : state_.returning) {
     if (seekers.size() == most_at_once) break;
-    if (back.due <= time) seekers.push_back({back.body, &sinks_[back.sink].recirculation->entrance, queue++});
+    if (back.due > time) continue;
+    const Entrance& entrance = sinks_[back.sink].recirculation->entrance;
+    seekers.push_back({back.body, &entrance, height_within(entrance.zone, back.body), queue++});
   }
   // An equal share for every supply, so that none has to wait for another.
   const std::size_t share = most_at_once / std::max<std::size_t>(1, supplies_.size()) + 1;
@@ -91,13 +100,13 @@ std::vector<PlaceSeeker> Turnover::due(double time) const {
       TravellingBody next = body_of(s, so_far.bodies);
       if (!is_due(supplies_[s], so_far, next.mass(), time)) break;
       so_far.add(next.mass());
-      seekers.push_back({std::move(next), &supplies_[s].entrance, queue});
+      seekers.push_back({std::move(next), &supplies_[s].entrance, std::nullopt, queue});
     }
   }
   return seekers;
 }
 
-void Turnover::enter(std::span<const PlaceSeeker> seekers, const std::vector<std::optional<Vec3>>& places) {
+void Turnover::enter(std::span<const PlaceSeeker> seekers, const std::vector<std::optional<FreePlace>>& places) {
   for (std::size_t n = 0; n < seekers.size(); ++n) {
     if (!places[n]) continue;
     const Entrance* entrance = seekers[n].entrance;

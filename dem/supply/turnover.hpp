@@ -60,7 +60,7 @@ public:
   // The bodies that are due at a time (s), the first of them if there are many.
   std::vector<PlaceSeeker> due(double time) const;
   // Enters in the book which of them have come in.
-  void enter(std::span<const PlaceSeeker> seekers, const std::vector<std::optional<Vec3>>& places);
+  void enter(std::span<const PlaceSeeker> seekers, const std::vector<std::optional<FreePlace>>& places);
   // Enters a body that has left by a sink at a time (s).
   void leave(TravellingBody body, std::size_t sink, double time);
 

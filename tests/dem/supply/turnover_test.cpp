@@ -272,6 +272,71 @@ TEST(Turnover, GrainsComeBackAsTheyWere) {
   EXPECT_EQ(grains.member_count(), 3);
 }
 
+// A box without gravity in which what reaches the right end comes in again on the left, between the heights of 10 and
+// 30 mm.
+GrainParameters box_that_recirculates() {
+  GrainParameters p = parameters();
+  p.body_force = {};
+  Sink end;
+  end.zone = {Vec3(0.034, 0.0, 0.0), Vec3(0.04, 0.02, 0.04)};
+  end.recirculation = {{{Vec3(0.004, 0.0, 0.01), Vec3(0.01, 0.02, 0.03)}, std::nullopt, 7}, 0.01};
+  p.sinks = {end};
+  return p;
+}
+
+GrainSeed flying_sphere(GlobalId id, double height) {
+  GrainSeed sphere = test::glass_sphere(id, Vec3(0.03, 0.01, height), Vec3(0.5, 0.0, 0.0), small);
+  sphere.angular_velocity = Vec3(1.0, 2.0, 3.0);
+  return sphere;
+}
+
+// At 0.5 m/s the sphere is beyond 34 mm after 8 ms and back 10 ms later; nothing touches it before 22 ms.
+TEST(Turnover, AGrainKeepsHeightAndMotion) {
+  GrainDynamics grains(
+      box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, box_that_recirculates(),
+      {{flying_sphere(0, 0.02)},
+       {test::glass_clump(1, test::pebble(), Vec3(0.03, 0.01, 0.012), Vec3(0.4, 0.0, 0.0), Vec3(0, 30, 0))}});
+  run(grains, 88);
+  EXPECT_EQ(diagnostic(grains, "recirculated_grains"), 2.0);
+  EXPECT_EQ(diagnostic(grains, "returning_grains"), 0.0);
+  const GrainStore& store = grains.store();
+  for (std::size_t s = 0; s < store.owned; ++s) {
+    if (store.clump[s] >= 0) continue;
+    EXPECT_LT(store.position[s].x(), 0.0125);
+    EXPECT_EQ(store.position[s].z(), 0.02);
+    EXPECT_EQ(store.velocity[s], Vec3(0.5, 0.0, 0.0));
+    EXPECT_EQ(store.angular_velocity[s], Vec3(1.0, 2.0, 3.0));
+  }
+  for (std::size_t c = 0; c < grains.clumps().size(); ++c) {
+    EXPECT_LT(grains.clumps()[c].centre.x(), 0.0125);
+    EXPECT_EQ(grains.clumps()[c].centre.z(), 0.012);
+    EXPECT_EQ(grains.clumps()[c].velocity, Vec3(0.4, 0.0, 0.0));
+    EXPECT_GT(grains.clumps()[c].angular_velocity.norm(), 20.0);
+  }
+}
+
+// One from above the entrance, and one whose height is taken: they come in where there is room, at rest.
+TEST(Turnover, AGrainThatCannotKeepItsHeightComesInAtRest) {
+  GrainParameters p = box_that_recirculates();
+  Zone& entrance = p.sinks[0].recirculation->entrance.zone;
+  entrance.lower.x() = entrance.upper.x() = 0.006;
+  entrance.lower.y() = entrance.upper.y() = 0.01;
+  GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p,
+                       GrainSeeds{{flying_sphere(0, 0.035), flying_sphere(1, 0.02),
+                                   test::glass_sphere(2, Vec3(0.006, 0.01, 0.0205), Vec3::Zero(), small)},
+                                  {}});
+  run(grains, 88);
+  EXPECT_EQ(diagnostic(grains, "recirculated_grains"), 2.0);
+  EXPECT_EQ(diagnostic(grains, "returning_grains"), 0.0);
+  EXPECT_EQ(grains.largest_overlap(), 0.0);
+  const GrainStore& store = grains.store();
+  for (std::size_t s = 0; s < store.owned; ++s) {
+    EXPECT_EQ(store.position[s].x(), 0.006);
+    EXPECT_EQ(store.velocity[s], Vec3::Zero());
+    EXPECT_EQ(store.angular_velocity[s], Vec3::Zero());
+  }
+}
+
 TEST(Turnover, ImpossibleSuppliesAreRefused) {
   const auto refused = [](const GrainParameters& p) {
     EXPECT_THROW(GrainDynamics(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start()), InputError);
