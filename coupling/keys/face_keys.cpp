@@ -29,6 +29,7 @@ lbm::FaceCondition condition_of(const FaceKeys& face, const Units& units) {
   condition.slip_of_first_cell = face.type == FaceType::slip_law_of_the_wall && face.of_first_cell;
   condition.slip_length = face.slip_length / units.spacing;
   condition.velocity = face.velocity / units.velocity();
+  if (face.recycling_plane) condition.recycling_plane = static_cast<int>(*face.recycling_plane / units.spacing);
   condition.density_deviation = 3.0 * face.pressure / units.stress();  // p = rho/3 in lattice units
   return condition;
 }
@@ -39,6 +40,7 @@ bool FaceKeys::operator==(const FaceKeys& other) const {
   return type == other.type && (type != FaceType::slip_law_of_the_wall || same_law(*this, other)) &&
          (type != FaceType::navier_slip || slip_length == other.slip_length) &&
          (!has_velocity() || velocity == other.velocity) &&
+         (type != FaceType::velocity_inlet || recycling_plane == other.recycling_plane) &&
          (type != FaceType::moving || oscillation == other.oscillation) &&
          (type != FaceType::pressure_outlet || pressure == other.pressure);
 }
@@ -76,13 +78,22 @@ void describe(SectionVisitor& visit, FaceKeys& face) {
               .example = 1e-4,
               .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it",
                           "type: navier_slip"}});
-  visit.vec3("velocity", face.velocity,
-             {.unit = "m/s",
-              .meaning = "of the wall or of the fluid that enters",
-              .required = true,
-              .example = 0.1,
-              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it",
-                          "type: moving or velocity_inlet"}});
+  visit.vec3(
+      "velocity", face.velocity,
+      {.unit = "m/s",
+       .meaning = "of the wall or of the fluid that enters; of an inlet that recycles the mean over the whole face",
+       .required = true,
+       .example = 0.1,
+       .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it",
+                   "type: moving or velocity_inlet"}});
+  visit.real("recycling_plane", face.recycling_plane,
+             {.unit = "m",
+              .meaning = "position along the normal of the face: the flow of this plane enters again, with its profile "
+                         "and its turbulence, brought to the velocity; default: all enters with the velocity",
+              .above = 0.0,
+              .example = 0.08,
+              .only_if = {face.type == FaceType::velocity_inlet,
+                          "only a velocity_inlet recycles the flow of a plane; remove it", "type: velocity_inlet"}});
   visit.section("oscillation", face.oscillation,
                 {.meaning = "dry grains only: on top of the velocity",
                  .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it", "type: moving"}});

@@ -17,6 +17,7 @@ struct FaceKeys {
   bool of_first_cell = false;                          // slip law of the wall: lbm::slip_coefficient_at instead
   double slip_length = 0.0;                            // m, navier_slip
   Vec3 velocity = Vec3::Zero();                        // m/s, moving and velocity_inlet
+  std::optional<double> recycling_plane = {};          // m along the normal, velocity_inlet; none: uniform velocity
   double pressure = 0.0;                               // Pa above the reference, pressure_outlet
   std::optional<dem::Oscillation> oscillation = {};    // moving; dry grains only
 

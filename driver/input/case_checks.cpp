@@ -244,21 +244,46 @@ bool has_sink_at(const Case& c, std::size_t face) {
   });
 }
 
+// The key that a case gives a face by: its own, or that of its axis.
+std::string key_of_face(std::size_t face, const io::YamlDocument& document) {
+  const char* keys[] = {"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
+  const std::string own = fmt::format("domain.boundaries.{}", keys[face]);
+  return document.find(own) ? own : fmt::format("domain.boundaries.{}", axis_name[face / 2]);
+}
+
+void check_recycling(const Case& c, const io::YamlDocument& document) {
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
+    const coupling::FaceKeys& inlet = c.domain.faces[face];
+    if (inlet.type != lbm::FaceType::velocity_inlet || !inlet.recycling_plane) continue;
+    const auto axis = static_cast<Eigen::Index>(face / 2);
+    Vec3 along = inlet.velocity;
+    along[axis] = 0.0;
+    if (along != Vec3::Zero())
+      throw document.error(key_of_face(face, document) + ".velocity",
+                           fmt::format("an inlet that recycles takes the flow along the face from its plane; give zero "
+                                       "for all but {}",
+                                       axis_name[axis]));
+    if (*inlet.recycling_plane >= c.domain.size[axis])
+      throw document.error(key_of_face(face, document) + ".recycling_plane",
+                           fmt::format("the plane must lie in the box; give a position along {} below {:g} m",
+                                       axis_name[axis], c.domain.size[axis]));
+  }
+}
+
 // Grains bounce off a face through which the water flows: they jam at an outlet, unless a sink takes them. An inlet
 // pushes them away.
 void check_open_faces(const Case& c, const io::YamlDocument& document) {
   const auto free = std::find_if(c.grains.begin(), c.grains.end(), [](const auto& grains) { return !grains.held(); });
   if (!has_fluid(c) || free == c.grains.end()) return;
-  const char* keys[] = {"x_low", "x_high", "y_low", "y_high"};
   for (std::size_t face = x_low; face <= y_high; ++face) {
     const coupling::FaceKeys& open = c.domain.faces[face];
     const double inwards = (face % 2 == 0 ? 1.0 : -1.0) * open.velocity[static_cast<Eigen::Index>(face / 2)];
     const bool pushes_away = open.type == lbm::FaceType::velocity_inlet && inwards > 0.0;
     if (!lbm::is_open(open.type) || pushes_away || has_sink_at(c, face)) continue;
     const beds::RegionKeys region = region_before(c, face);
-    const std::string axis = axis_name[face / 2], own = fmt::format("domain.boundaries.{}", keys[face]);
+    const std::string axis = axis_name[face / 2];
     throw document.error(
-        document.find(own) ? own : "domain.boundaries." + axis,
+        key_of_face(face, document),
         fmt::format(
             "grains would jam at this face, through which only the water leaves; give sinks: [{{region: {{lower: "
             "[{:g}, {:g}, {:g}], upper: [{:g}, {:g}, {:g}]}}}}] or one that is at least half as deep, give {}: "
@@ -322,6 +347,7 @@ void check_case(const Case& c, const io::YamlDocument& document) {
   check_fluid(c, document);
   check_number_of_steps(c, document);
   check_gravity(c, document);
+  check_recycling(c, document);
   check_open_faces(c, document);
   check_grains(c, document);
   check_model_fluid(c, document);

@@ -102,7 +102,7 @@ void Fluid<Real>::carry_force() {
 template <typename Real>
 void Fluid<Real>::apply_walls() {
   CHECK(!halo_.under_way());  // walls read the halo
-  walls_.apply(populations_, cells_);
+  walls_.apply(populations_, cells_, communicator_);
 }
 
 template <typename Real>
@@ -212,7 +212,7 @@ void Fluid<Real>::advance_behind_halo() {
 template <typename Real>
 void Fluid<Real>::advance() {
   const bool whole_rows = decomposition_.layout()[0] == 1 && decomposition_.periodic()[0];
-  if (halo_.has_other_ranks() && whole_rows) return advance_behind_halo();
+  if (halo_.has_other_ranks() && whole_rows && !walls_.recycles()) return advance_behind_halo();
   exchange_halo();
   apply_walls();
   stream_and_collide();

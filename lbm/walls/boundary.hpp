@@ -83,7 +83,10 @@ struct FaceCondition {
   bool slip_of_first_cell = false;  // slip_law_of_the_wall: slip_coefficient_at the first cell instead
   double slip_length = 0.0;         // navier_slip, cells
   Vec3 velocity = Vec3::Zero();     // moving (in the plane of the face), velocity_inlet
-  double density_deviation = 0.0;   // pressure_outlet: rho - 1
+  // velocity_inlet: coordinate of the plane of cells, along the normal of the face, whose flow enters again; none: the
+  // velocity is uniform.
+  std::optional<int> recycling_plane = std::nullopt;
+  double density_deviation = 0.0;  // pressure_outlet: rho - 1
 };
 
 // Faces in the order x low, x high, y low, y high, z low, z high.

@@ -16,9 +16,11 @@ double dot(int direction, const Vec3& v) {
 }  // namespace
 
 template <typename Real>
-void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells) {
+void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator) {
   for (int face = 0; face < 6; ++face)
-    if (present_[face]) apply_face(populations, cells, face);
+    if (present_[face] && !recycled_[face]) apply_face(populations, cells, face);
+  for (const auto& inflow : recycled_)
+    if (inflow) inflow->apply(populations, cells, communicator);
 }
 
 template <typename Real>

@@ -86,6 +86,9 @@ Walls<Real>::Walls(const Decomposition& decomposition, int rank, const CellIndex
   for (int face = 0; face < 6; ++face) {
     if (faces[face].type == FaceType::pressure_outlet)
       outlets_[face].emplace(faces[face].density_deviation, decomposition.cells()[face / 2]);
+    if (faces[face].type == FaceType::velocity_inlet && faces[face].recycling_plane)
+      recycled_[face].emplace(decomposition, rank, indexing, face, *faces[face].recycling_plane,
+                              (face % 2 == 0 ? 1.0 : -1.0) * faces[face].velocity[face / 2]);
     if (has_stress(face)) {
       check_depth(decomposition, face, face_names[face]);
       if (present_[face]) stress_[face].emplace(indexing, face, present_, decomposition.cells()[face / 2], viscosity_);
@@ -165,6 +168,11 @@ void Walls<Real>::end_sweep() {
   for (auto& stress : stress_)
     if (stress) stress->end_sweep();
   swept_ = true;
+}
+
+template <typename Real>
+bool Walls<Real>::recycles() const {
+  return std::any_of(recycled_.begin(), recycled_.end(), [](const auto& face) { return face.has_value(); });
 }
 
 template <typename Real>

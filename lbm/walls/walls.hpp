@@ -8,6 +8,7 @@
 //                      The two populations along an axis take just T out of the cell, and no mass, whatever collision
 //                      and subgrid model make of the flow.
 //   moving, inlet      f_o(x, t+1) = f_o'^c(x, t) + 6 w_o rho(x, t) c_o.U                               (Ladd 1994)
+//   recycling inlet    recycled_inflow.hpp, in edges too
 //   outlet             f_o(x, t+1) = f_o^eq(rho_w, u),   u of the cell, rho_w of outlet_density.hpp
 //                      What enters has no part out of equilibrium: at small viscosities a rule that keeps or reverses
 //                      that part (anti-bounce-back, extrapolation) amplifies it, and breaks down as eddies leave.
@@ -34,6 +35,7 @@
 #include "lbm/lattice/populations.hpp"
 #include "lbm/walls/boundary.hpp"
 #include "lbm/walls/outlet_density.hpp"
+#include "lbm/walls/recycled_inflow.hpp"
 #include "lbm/walls/wall_stress.hpp"
 
 #include <mpi.h>
@@ -74,9 +76,12 @@ public:
   // Number of cells next to a face that apply() reads.
   int depth() const;
 
-  // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date.
-  // Applied again before the next sweep, it fills in the same.
-  void apply(Populations<Real>& populations, const CellMap& cells);
+  bool recycles() const;  // true if there is an inlet that recycles, on whatever rank
+
+  // Fills the incoming populations of all owned cells at walls. The halo, which it reads, must be up to date, and no
+  // row swept where an inlet recycles. Applied again before the next sweep, it fills in the same. Collective where
+  // recycles().
+  void apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator);
 
   // The momentum that each face takes from this rank's fluid in the next step, once apply() is done. Populations count
   // as f - w (1 + reference), so that a fluid at rest with rho = 1 + reference exerts no force.
@@ -154,8 +159,9 @@ private:
   Vec3 half_force_ = Vec3::Zero();  // of the last collision
   std::array<bool, 6> present_{};
   mutable std::array<FaceField<Real>, 6> bounced_;
-  std::array<std::optional<WallStress<Real>>, 6> stress_;  // at faces that obey the law of the wall
-  std::array<std::optional<OutletDensity>, 6> outlets_;    // on all ranks
+  std::array<std::optional<WallStress<Real>>, 6> stress_;        // at faces that obey the law of the wall
+  std::array<std::optional<OutletDensity>, 6> outlets_;          // on all ranks
+  std::array<std::optional<RecycledInflow<Real>>, 6> recycled_;  // on all ranks
   bool swept_ = false;
 };
 

@@ -152,6 +152,21 @@ INSTANTIATE_TEST_SUITE_P(
             {"domain.boundaries={x: periodic, y: {type: velocity_inlet, velocity: [0.1, 0, 0]}, bottom: no_slip, "
              "top: free_slip}"},
             {"domain.boundaries.y", "would jam at this face", "y: periodic"}},
+        Bad{"a_recycling_plane_outside_the_box",
+            {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0], recycling_plane: 0.06}, x_high: "
+             "pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
+             "grains.0.fixed=true"},
+            {"domain.boundaries.x_low.recycling_plane", "a position along x below 0.06 m"}},
+        Bad{"a_recycling_inlet_that_blows_sideways",
+            {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0.1], recycling_plane: 0.04}, x_high: "
+             "pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
+             "grains.0.fixed=true"},
+            {"domain.boundaries.x_low.velocity", "give zero for all but x"}},
+        Bad{"a_plane_for_an_outlet",
+            {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: pressure_outlet, "
+             "recycling_plane: 0.04}, y: no_slip, bottom: no_slip, top: free_slip}",
+             "grains.0.fixed=true"},
+            {"domain.boundaries.x_high.recycling_plane", "only a velocity_inlet recycles"}},
         Bad{"too_many_steps",
             {"run.until=1e30"},
             {"run.until = 1e30: the run would take 5e+34 steps of 2e-05 s",

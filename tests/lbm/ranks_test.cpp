@@ -44,6 +44,10 @@ std::vector<Box> boxes() {
   lid.velocity = Vec3(0.03, 0.02, 0.0);
   inlet.velocity = Vec3(0.03, 0.01, 0.0);
   outlet.density_deviation = 0.002;
+  FaceCondition recycled = inlet, recycled_from_above{FaceType::velocity_inlet};
+  recycled.recycling_plane = 23;
+  recycled_from_above.velocity = Vec3(0.0, -0.04, 0.0);
+  recycled_from_above.recycling_plane = 11;
   return {{"periodic", {periodic, periodic, periodic, periodic, periodic, periodic}},
           {"flume", {periodic, periodic, law, law, no_slip, free_slip}},
           {"published flume", {periodic, periodic, slip_law, slip_law, no_slip, free_slip}},
@@ -54,7 +58,9 @@ std::vector<Box> boxes() {
           {"channel of two cells", {periodic, periodic, law, law, no_slip, free_slip}, {37, 2, 35}},
           {"channel of three cells", {law, law, periodic, periodic, no_slip, free_slip}, {3, 37, 35}},
           {"channel of five cells a rank at most", {periodic, periodic, law, law, law, free_slip}, {37, 10, 10}},
-          {"open", {inlet, outlet, law, slip, no_slip, free_slip}}};
+          {"open", {inlet, outlet, law, slip, no_slip, free_slip}},
+          {"open, recycling", {recycled, outlet, law, slip, no_slip, free_slip}},
+          {"open across, recycling", {periodic, periodic, outlet, recycled_from_above, no_slip, free_slip}}};
 }
 
 struct Model {

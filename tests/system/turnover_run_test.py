@@ -125,6 +125,25 @@ class TurnoverRun(ProgramTest):
         self.run_well("run", case, "--out", self.folder / "two", *settings, ranks=2)
         self.assertEqual(self.checkpoints("two"), self.checkpoints("one"))
 
+    def test_a_stream_whose_inlet_recycles(self):
+        # From rest, so that the inlet brings the water to its speed; grains pass through the plane.
+        case = self.folder / "stream.yaml"
+        case.write_text(STREAM)
+        settings = ["--set", "domain.boundaries.x_low.recycling_plane=0.04", "--set", "initial={fluid: {uniform: [0, 0, 0]}}",
+                    "--set", "domain.boundaries.bottom=law_of_the_wall"]
+        self.run_well("run", case, "--out", self.folder / "one", *settings)
+        known = self.balance("one", 2)
+        self.assertGreaterEqual(known["left_grains"][-1], 5)
+        # The discharge passes every section; a grain, of 0.4 % of the box, takes its share of it along.
+        momentum = 1000 * 0.2 * 0.060 * 0.015 * 0.020
+        share = 0.004 * known["grains"][-1]
+        self.assertAlmostEqual(known["fluid_momentum_x"][-1] / momentum, 1.0 - share, delta=0.01)
+        self.run_well("run", case, "--out", self.folder / "two", *settings, ranks=2)
+        self.assertEqual(self.checkpoints("two"), self.checkpoints("one"))
+        self.run_well("run", case, "--out", self.folder / "again", "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
+        self.assertEqual(self.checkpoints("again")[-1], self.checkpoints("one")[-1])
+
     def test_a_restart_keeps_supplies_and_sinks(self):
         self.run_well("run", self.case, "--out", self.folder / "one", "--set", "run.until=0.01")
         self.assert_refused("run", self.case, "--out", self.folder / "two", "--restart", self.folder / "one", "--set",
