@@ -140,7 +140,7 @@ class TurnoverRun(ProgramTest):
         self.assertAlmostEqual(known["fluid_momentum_x"][-1] / momentum, 1.0 - share, delta=0.01)
         self.run_well("run", case, "--out", self.folder / "two", *settings, ranks=2)
         self.assertEqual(self.checkpoints("two"), self.checkpoints("one"))
-        self.run_well("run", case, "--out", self.folder / "again", "--restart",
+        self.run_well("run", case, "--out", self.folder / "again", *settings, "--restart",
                       sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
         self.assertEqual(self.checkpoints("again")[-1], self.checkpoints("one")[-1])
 
