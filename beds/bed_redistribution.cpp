@@ -3,6 +3,7 @@
 #include "beds/population/population_clumps.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace thalweg::beds {
 namespace {
@@ -13,19 +14,30 @@ struct FileRow {
   GlobalId id, clump;
   double radius, density;
   double at[3], velocity[3], angular_velocity[3];
+  double body[11];  // volume, from_first, moments, orientation; volume 0: none
 };
 
 FileRow packed(const BedGrain& row, const Vec3& centre) {
-  FileRow packed{{}, row.id, row.clump, row.radius, row.density, {}, {}, {}};
+  FileRow packed{{}, row.id, row.clump, row.radius, row.density, {}, {}, {}, {}};
   std::copy_n(centre.data(), 3, packed.position);
   std::copy_n(row.position.data(), 3, packed.at);
   std::copy_n(row.velocity.data(), 3, packed.velocity);
   std::copy_n(row.angular_velocity.data(), 3, packed.angular_velocity);
+  if (row.body) {
+    packed.body[0] = row.body->volume;
+    std::copy_n(row.body->from_first.data(), 3, packed.body + 1);
+    std::copy_n(row.body->moments.data(), 3, packed.body + 4);
+    std::copy_n(row.body->orientation.data(), 4, packed.body + 7);
+  }
   return packed;
 }
 
 BedGrain unpacked(const FileRow& row) {
-  return {row.id, row.radius, row.density, Vec3(row.at), Vec3(row.velocity), Vec3(row.angular_velocity), row.clump};
+  BedGrain grain{row.id,    row.radius, row.density, Vec3(row.at), Vec3(row.velocity), Vec3(row.angular_velocity),
+                 row.clump, {}};
+  if (const double* b = row.body; b[0] > 0.0)
+    grain.body = std::make_shared<const BedBody>(BedBody{b[0], Vec3(b + 1), Vec3(b + 4), {b[7], b[8], b[9], b[10]}});
+  return grain;
 }
 
 struct SphereRow {

@@ -10,12 +10,14 @@ namespace {
 // A clump's members, one clump after the other.
 void add_clumps(const Population& population, PopulationRow row, const RowRange& share,
                 std::vector<PopulationRow>& rows) {
-  const auto shape = clump_shape_of(population);
-  row.mass = population.density * shape->volume;
+  ClumpShapes shapes(population);
   row.contact_mass = population.clumps.least_contact_mass;
   row.motion = member_of(row.motion);
   for (std::int64_t n = share.first; n < share.last; ++n) {
-    row.radius = shape->members[static_cast<std::size_t>(n) % shape->members.size()].radius;
+    const auto number = static_cast<std::size_t>(n), members = shapes.member_count();
+    const auto shape = shapes.of(population.diameter_of(number / members));
+    row.mass = population.density * shape->volume;
+    row.radius = shape->members[number % members].radius;
     rows.push_back(row);
   }
 }

@@ -188,12 +188,13 @@ private:
 
   void add_clumps(const Population& population, const Places& places, const auto& seed_of) {
     dem::ClumpSeed clump;
-    clump.shape = clump_shape_of(population);
-    const auto members = static_cast<GlobalId>(clump.shape->members.size());
+    ClumpShapes shapes(population);
+    const auto members = static_cast<GlobalId>(shapes.member_count());
     places([&](std::size_t grain, const Vec3& centre) {
       if (!wants(in_plane(centre, population, ranks_.box()), -1)) return;
       dem::GrainSeed as_grain = seed_of(grain, centre);
       as_grain.id = first_ + static_cast<GlobalId>(grain) * members;
+      clump.shape = shapes.of(population.diameter_of(grain));
       clump.position = as_grain.position;
       clump.orientation = orientation_of(population, grain);
       seeds_.clumps.push_back(clump_seed_of(as_grain, clump));

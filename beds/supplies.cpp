@@ -110,11 +110,11 @@ dem::Supply supply_of(const SupplyKeys& keys, std::span<const Population> popula
   supply.until = keys.until.value_or(std::numeric_limits<double>::infinity());
   const int material = material_of(populations, number);
   if (population.shape) {
-    const std::shared_ptr<const dem::ClumpShape> shape = clump_shape_of(population);
-    supply.members = static_cast<int>(shape->members.size());
-    supply.make = [population, shape, material](std::int64_t n) {
+    const auto shapes = std::make_shared<ClumpShapes>(population);
+    supply.members = static_cast<int>(shapes->member_count());
+    supply.make = [population, shapes, diameters = Diameters(population, keys.seed), material](std::int64_t n) {
       dem::ClumpSeed clump;
-      clump.shape = shape;
+      clump.shape = shapes->of(diameters.of(n));
       clump.density = population.density;
       clump.orientation = orientation_of(population, static_cast<std::size_t>(population.count + n));
       clump.material = material;

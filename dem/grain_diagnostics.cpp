@@ -200,7 +200,9 @@ void GrainDynamics::show_clumps(GrainView& view) const {
                            clump.velocity,
                            clump.kinetic_energy(),
                            {q.w, q.x, q.y, q.z},
-                           holds_translation(clump.motion)});
+                           holds_translation(clump.motion),
+                           clump.moments,
+                           clump.angular_velocity});
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -123,12 +124,14 @@ void take_bed(Population& population, Bed bed, const PeriodicBox& box, const Ran
   about_file([&] { check_rows(population, box, ranks); });
 }
 
-// Grains that are clumps, where the case gives their shape.
-void take_shape(Population& population) {
+// The shape of the grains as the case gives it, and their size where it gives none.
+std::shared_ptr<const dem::ClumpShape> take_shape(Population& population) {
   try {
-    const auto shape = clump_shape_of(population);
-    population.clumps = figures_of(*shape, population.density, population.count);
-    population.diameter = 2.0 * shape->equivalent_radius();
+    std::shared_ptr<const dem::ClumpShape> shape = clump_shape_of(population);
+    population.shape_diameter = 2.0 * shape->equivalent_radius();
+    population.shape_extent = 2.0 * shape->bounding_radius;
+    if (!population.has_size()) population.diameter = population.shape_diameter;
+    return shape;
   } catch (const InputError& error) {
     throw KeyError("shape.clump", without_period(error.what()));
   }
@@ -144,10 +147,7 @@ const char* wanted_by(const Population& population) {
 // Every rank draws the sizes of all grains: 58 bytes each while it does.
 constexpr std::int64_t most_drawn = 100000000;
 
-// Shape and sizes, once the number of grains is known.
-void take_sizes(Population& population) {
-  if (population.shape) take_shape(population);
-  if (!population.sizes.given()) return;
+void draw_sizes(Population& population) {
   if (population.count > most_drawn)
     throw KeyError(wanted_by(population),
                    fmt::format("sizes are drawn for at most {} grains, since every rank has those of all, and here are "
@@ -156,6 +156,13 @@ void take_sizes(Population& population) {
   const bool disks = population.thickness > 0.0;
   population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed, disks);
   population.diameter = median_by_mass(counted(population.diameters), disks);
+}
+
+// Shape and sizes, once the number of grains is known.
+void take_sizes(Population& population) {
+  const std::shared_ptr<const dem::ClumpShape> shape = population.shape ? take_shape(population) : nullptr;
+  if (population.sizes.given()) draw_sizes(population);
+  if (shape) population.clumps = figures_of(population, *shape);
 }
 
 // Size (m) of the placement's region, or of the box; disks are as wide as they are thick.

@@ -28,20 +28,35 @@ std::int64_t Population::row_count() const {
   return shape ? count * static_cast<std::int64_t>(shape->clump.size()) : count;
 }
 
+double Population::finest() const {
+  return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
+}
+
+double Population::coarsest() const {
+  return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
+}
+
+namespace {
+
+double largest_member(const ShapeKeys& shape) {
+  double largest = 0.0;
+  for (const MemberKeys& member : shape.clump) largest = std::max(largest, member.diameter);
+  return largest;
+}
+
+}  // namespace
+
 double Population::smallest_diameter() const {
   if (from_file()) return figures.smallest_diameter;
-  if (!shape) return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
+  if (!shape) return finest();
   double smallest = std::numeric_limits<double>::infinity();
   for (const MemberKeys& member : shape->clump) smallest = std::min(smallest, member.diameter);
-  return smallest;
+  return smallest * scale_of(finest());
 }
 
 double Population::largest_diameter() const {
   if (from_file()) return figures.largest_diameter;
-  if (!shape) return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
-  double largest = 0.0;
-  for (const MemberKeys& member : shape->clump) largest = std::max(largest, member.diameter);
-  return largest;
+  return shape ? largest_member(*shape) * scale_of(coarsest()) : coarsest();
 }
 
 double Population::largest_extent() const { return std::max(largest_diameter(), clumps.largest_extent); }
@@ -54,7 +69,7 @@ double Population::lightest_mass() const {
 }
 
 double Population::radius_per_mass() const {
-  if (shape) return 0.5 * largest_diameter() / clumps.least_contact_mass;
+  if (shape) return 0.5 * largest_member(*shape) * scale_of(finest()) / clumps.least_contact_mass;
   if (!from_file()) return 0.5 * smallest_diameter() / lightest_mass();
   const double of_members = clumps.count > 0 ? figures.largest_member / clumps.least_contact_mass : 0.0;
   return std::max(figures.radius_per_mass, of_members);

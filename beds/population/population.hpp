@@ -66,8 +66,8 @@ struct PopulationKeys {
   std::int64_t count = 0;  // completed from positions, the grains of the file, solid fraction or fill, where given
   std::optional<double> solid_fraction;  // of the region; none once the count is completed
   std::optional<FillKeys> fill;          // likewise
-  double diameter = 0.0;  // m; completed: where they differ, the one that half of the mass is finer than; of the
-                          // sphere (disk) of a clump's volume
+  double diameter = 0.0;  // m, of a clump that of the sphere (disk) of its volume, 0: as its shape is given; completed:
+                          // where they differ, the one that half of the mass is finer than
   double density = 0.0;   // kg/m^3; completed from a file: mass over volume of all its grains
   SizesKeys sizes;
   std::optional<ShapeKeys> shape;
@@ -82,6 +82,7 @@ struct PopulationKeys {
   std::optional<dem::MotionKeys> motion;            // all together, as one body
   bool operator==(const PopulationKeys&) const = default;
 
+  bool has_size() const { return sizes.given() || diameter > 0.0; }     // its grains, whatever their shape
   bool held() const { return fixed || prescribed_velocity || motion; }  // moves as prescribed, or not at all
 };
 void describe(SectionVisitor& visit, PopulationKeys& population);
@@ -128,6 +129,8 @@ struct Population : PopulationKeys {
   std::vector<BedGrain> file;
   FileFigures figures;  // of the whole file
   ClumpFigures clumps;  // of shape or file
+  // m, of the shape as it is given: of the sphere (disk) of its volume, and its largest extent.
+  double shape_diameter = 0.0, shape_extent = 0.0;
 
   bool operator==(const Population&) const = default;
 
@@ -136,8 +139,16 @@ struct Population : PopulationKeys {
   // Sizes (m) of grains that are not from a file: the diameter, of a clump that of the sphere (disk) of its volume;
   // the diameter of the sphere that a grain needs at its place; the largest of these.
   double diameter_of(std::size_t grain) const { return diameters.empty() ? diameter : diameters[grain]; }
-  double room_of(std::size_t grain) const { return shape ? clumps.largest_extent : diameter_of(grain); }
+  double room_of(std::size_t grain) const {
+    return shape ? shape_extent * scale_of(diameter_of(grain)) : diameter_of(grain);
+  }
   double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }
+  // Of the smallest and the largest grain, not from a file; m.
+  double finest() const;
+  double coarsest() const;
+  double scale_of(double grain_diameter) const {  // of the clump of this size (m) over the shape as it is given
+    return grain_diameter / shape_diameter;
+  }
   std::vector<SizeCount> sizes_of_grains() const;  // a clump with the sphere (disk) of its volume; rising
   double volume_of(double grain_diameter) const;   // m^3, of a sphere, or a disk as thick as they are; m
   double smallest_diameter() const;                // m, of spheres and members

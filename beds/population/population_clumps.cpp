@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -43,6 +44,27 @@ std::shared_ptr<const dem::ClumpShape> clump_shape_of(const Population& populati
     return std::make_shared<const dem::ClumpShape>(clump_shape(members, moments_of(*body)));
   }
   return std::make_shared<const dem::ClumpShape>(clump_shape(members, population.thickness));
+}
+
+ClumpShapes::ClumpShapes(const Population& population) : as_given_(clump_shape_of(population)) {
+  by_diameter_.emplace(2.0 * as_given_->equivalent_radius(), as_given_);
+}
+
+std::shared_ptr<const dem::ClumpShape> ClumpShapes::of(double diameter) {
+  std::shared_ptr<const dem::ClumpShape>& shape = by_diameter_[diameter];
+  if (!shape)
+    shape =
+        std::make_shared<const dem::ClumpShape>(scaled(*as_given_, diameter / (2.0 * as_given_->equivalent_radius())));
+  return shape;
+}
+
+double intermediate_axis(const dem::ClumpShape& shape) {
+  std::array<double, 3> squares;
+  for (int n = 0; n < 3; ++n)
+    squares[static_cast<std::size_t>(n)] =
+        10.0 * std::max(0.0, shape.moments.sum() - 2.0 * shape.moments[n]) / shape.volume;
+  std::sort(squares.begin(), squares.end());
+  return std::sqrt(squares[1]);
 }
 
 void take_surface(ShapeKeys& shape, const TriangleMesh& surface) {
@@ -120,12 +142,35 @@ std::vector<Vec3> places_from_first(std::span<const BedGrain> rows, const Period
 
 }  // namespace
 
+namespace {
+
+// Members in space, about the first.
+dem::ClumpShape shape_of(const BedBody& body, std::vector<dem::PlacedSphere> members, double thickness) {
+  const auto& [w, x, y, z] = body.orientation;
+  dem::ClumpShape shape;
+  shape.volume = body.volume;
+  shape.moments = body.moments;
+  shape.centre = body.from_first;
+  shape.principal = {w, x, y, z};
+  shape.thickness = thickness;
+  const Eigen::Matrix3d turn = rotation_matrix(shape.principal);
+  for (dem::PlacedSphere& member : members) {
+    member.position = turn.transpose() * (member.position - shape.centre);
+    shape.bounding_radius = std::max(shape.bounding_radius, member.position.norm() + member.radius);
+  }
+  shape.members = std::move(members);
+  return shape;
+}
+
+}  // namespace
+
 dem::ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box, double thickness) {
   const BedGrain& first = rows.front();
   std::vector<dem::PlacedSphere> members;
   for (const Vec3& place : places_from_first(rows, box)) members.push_back({place, rows[members.size()].radius});
   dem::ClumpSeed clump;
-  clump.shape = std::make_shared<const dem::ClumpShape>(clump_shape(members, thickness));
+  clump.shape = std::make_shared<const dem::ClumpShape>(
+      first.body ? shape_of(*first.body, std::move(members), thickness) : clump_shape(members, thickness));
   clump.density = first.density;
   clump.position = box.wrapped(first.position + clump.shape->centre);
   clump.velocity = first.velocity + first.angular_velocity.cross(clump.shape->centre);
@@ -136,6 +181,16 @@ dem::ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box
 ClumpFigures figures_of(const dem::ClumpShape& shape, double density, std::int64_t count) {
   return {count, static_cast<double>(count) * shape.volume, shape.least_contact_mass(density),
           2.0 * shape.bounding_radius};
+}
+
+ClumpFigures figures_of(const Population& population, const dem::ClumpShape& as_given) {
+  ClumpFigures figures =
+      figures_of(scaled(as_given, population.scale_of(population.finest())), population.density, population.count);
+  figures.largest_extent = 2.0 * as_given.bounding_radius * population.scale_of(population.coarsest());
+  if (population.diameters.empty()) return figures;
+  figures.volume = 0.0;
+  for (const double diameter : population.diameters) figures.volume += population.volume_of(diameter);
+  return figures;
 }
 
 }  // namespace thalweg::beds

@@ -67,21 +67,36 @@ static void describe(SectionVisitor& visit, OrientationKeys& orientation) {
   visit.require(!orientation.axis.isZero(0.0), "axis", "a direction cannot be zero; give for example [0, 1, 0]");
 }
 
-// Diameter, or shape.
+struct DiameterKeys {
+  SizesKeys sizes;
+  double diameter = 0.0;  // m
+};
+
+static void describe(SectionVisitor& visit, DiameterKeys& keys) { describe(visit, keys.sizes, keys.diameter); }
+
+// Shape, and diameter.
 static void describe_size(SectionVisitor& visit, PopulationKeys& grains, const OnlyIf& no_file) {
-  visit.section("shape", grains.shape,
-                {.meaning = "in place of a diameter, for grains that are no spheres", .only_if = no_file});
+  visit.section("shape", grains.shape, {.meaning = "of grains that are no spheres", .only_if = no_file});
   const OnlyIf of_shape{grains.shape || !visit.reading(), "spheres have none; give a shape or remove the key"};
   visit.section("orientation", grains.orientation,
                 {.meaning = "of all clumps; default: each at random", .only_if = no_file.holds ? of_shape : no_file});
-  const OnlyIf of_spheres{!grains.shape, "the members of the shape have diameters; remove this key or the shape"};
-  visit.section("diameter",
-                {.meaning = "the same for all grains, or a distribution",
-                 .required = true,
-                 .shorthand = "value",
-                 .expected = "a number in m above 0, for example 0.005",
-                 .only_if = no_file.holds ? of_spheres : no_file},
-                [&](SectionVisitor& inside) { describe(inside, grains.sizes, grains.diameter); });
+  SectionKey about{.meaning =
+                       "the same for all grains, or a distribution; of a shape that of the sphere of its volume, by "
+                       "default as the shape is given",
+                   .required = !grains.shape,
+                   .shorthand = "value",
+                   .expected = "a number in m above 0, for example 0.005",
+                   .only_if = no_file};
+  if (!grains.shape) {
+    visit.section("diameter", about, [&](SectionVisitor& inside) { describe(inside, grains.sizes, grains.diameter); });
+    return;
+  }
+  std::optional<DiameterKeys> given;
+  if (grains.has_size()) given = {grains.sizes, grains.diameter};
+  visit.section("diameter", given, about);
+  if (given) grains.sizes = given->sizes, grains.diameter = given->diameter;
+  visit.require(!given || !grains.shape->scale, "shape.scale",
+                "the diameter already says how large the grains are; remove one of the two");
 }
 
 static void describe(SectionVisitor& visit, FillKeys& fill) {

@@ -4,9 +4,19 @@
 #include "core/base/types.hpp"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace thalweg {
+
+// The body that the members of a clump stand for.
+struct BedBody {
+  double volume = 0.0;                                    // m^3
+  Vec3 from_first = Vec3::Zero();                         // m, from the centre of the first member to its own
+  Vec3 moments = Vec3::Zero();                            // m^5, about its principal axes, at 1 kg/m^3
+  std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z: a unit quaternion from these axes to space
+  bool operator==(const BedBody&) const = default;
+};
 
 struct BedGrain {
   GlobalId id = 0;
@@ -16,7 +26,14 @@ struct BedGrain {
   Vec3 velocity = Vec3::Zero();          // m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s
   GlobalId clump = -1;                   // id of the clump it is a member of; members follow each other
-  bool operator==(const BedGrain&) const = default;
+  // Of the first member of a clump; none: the clump is the union of its members.
+  std::shared_ptr<const BedBody> body = {};
+
+  bool operator==(const BedGrain& other) const {
+    return id == other.id && radius == other.radius && density == other.density && position == other.position &&
+           velocity == other.velocity && angular_velocity == other.angular_velocity && clump == other.clump &&
+           (body && other.body ? *body == *other.body : body == other.body);
+  }
 };
 
 struct Bed {

@@ -23,7 +23,9 @@ struct ClumpState {
   double kinetic_energy;  // J, with rotation
   // Unit quaternion w, x, y, z that turns vectors from the frame of its principal axes into space.
   std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};
-  bool velocity_is_held = false;  // no force changes it
+  bool velocity_is_held = false;         // no force changes it
+  Vec3 moments = Vec3::Zero();           // kg m^2, about its principal axes
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s
 };
 
 // The grains this rank owns, in no particular order. Every span has one entry a grain. Members of clumps are among them

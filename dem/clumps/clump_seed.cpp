@@ -117,6 +117,19 @@ ClumpShape clump_shape(std::span<const PlacedSphere> members, const BodyMoments&
   return shape;
 }
 
+ClumpShape scaled(ClumpShape shape, double factor) {
+  const double of_volume = shape.thickness > 0.0 ? factor * factor : factor * factor * factor;
+  for (PlacedSphere& member : shape.members) {
+    member.position *= factor;
+    member.radius *= factor;
+  }
+  shape.volume *= of_volume;
+  shape.moments *= of_volume * factor * factor;
+  shape.centre *= factor;
+  shape.bounding_radius *= factor;
+  return shape;
+}
+
 std::vector<GrainSeed> with_members(std::vector<GrainSeed> grains, std::span<const ClumpSeed> clumps,
                                     const PeriodicBox& box) {
   for (const ClumpSeed& clump : clumps) {

@@ -38,6 +38,9 @@ double least_contact_mass(double mass, const Vec3& moments, std::span<const Vec3
 // thickness) are not in one plane y = const.
 ClumpShape clump_shape(std::span<const PlacedSphere> members, double thickness = 0.0);
 
+// The shape `factor` times as large; disks keep their thickness.
+ClumpShape scaled(ClumpShape shape, double factor);
+
 struct ClumpSeed {
   GlobalId id = 0;                          // of its first member; the others have those that follow
   std::shared_ptr<const ClumpShape> shape;  // may be shared by many

@@ -41,11 +41,11 @@ double given_speed(const Case& c) {
   return fastest;
 }
 
-// Ratio of masses of spheres or disks of one density; clumps are alike.
+// Ratio of masses of spheres, disks or clumps of one shape, and of one density.
 double heaviest_over_lightest(const beds::Population& grains) {
-  return grains.shape
-             ? 1.0
-             : std::pow(grains.largest_diameter() / grains.smallest_diameter(), grains.thickness > 0.0 ? 2 : 3);
+  const double ratio =
+      grains.shape ? grains.coarsest() / grains.finest() : grains.largest_diameter() / grains.smallest_diameter();
+  return std::pow(ratio, grains.thickness > 0.0 ? 2 : 3);
 }
 
 double speed_of_a_fall(const Case& c) {

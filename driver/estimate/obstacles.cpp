@@ -28,10 +28,8 @@ std::vector<HeldGrain> held_grains(const beds::Population& population, const Per
   std::vector<HeldGrain> grains(static_cast<std::size_t>(population.count));
   const auto members = static_cast<std::size_t>(population.row_count() / std::max<std::int64_t>(1, population.count));
   for (std::size_t n = 0; n < grains.size(); ++n) {
-    const bool clump = population.shape.has_value();
-    grains[n].volume = clump ? population.volume() / static_cast<double>(population.count)
-                             : population.volume_of(population.diameter_of(n));
-    grains[n].extent = clump ? population.clumps.largest_extent : population.diameter_of(n);
+    grains[n].volume = population.volume_of(population.diameter_of(n));
+    grains[n].extent = population.room_of(n);
   }
   for (const dem::GrainSeed& row : rows)
     grains[static_cast<std::size_t>(row.id) / members].spheres.push_back(

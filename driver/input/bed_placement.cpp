@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <utility>
 
 namespace thalweg::driver {
@@ -36,6 +38,14 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
   }
 }
 
+// What makes a surface as large as a grain, whose own size its clump takes later; 1 where it encloses nothing, which
+// will be said.
+double scale_to_size(const TriangleMesh& surface) {
+  constexpr double as_large_as = 0.01;  // m, a sphere
+  const double volume = signed_volume(surface);
+  return volume > 0.0 ? as_large_as / std::cbrt(6.0 * volume / std::numbers::pi) : 1.0;
+}
+
 // Makes the clumps of populations whose shape is an STL file.
 void take_shape(beds::Population& population, const io::YamlDocument& document, const std::string& grains,
                 const Ranks& ranks) {
@@ -45,7 +55,8 @@ void take_shape(beds::Population& population, const io::YamlDocument& document, 
   shape.made_from = document.path_beside(*shape.stl, key);
   try {
     TriangleMesh surface = io::read_stl(shape.made_from, ranks);
-    for (Vec3& point : surface.points) point *= shape.scale.value_or(1.0);
+    const double scale = population.has_size() ? scale_to_size(surface) : shape.scale.value_or(1.0);
+    for (Vec3& point : surface.points) point *= scale;
     take_surface(shape, surface);
   } catch (const InputError& error) {
     std::string reason = error.what();

@@ -91,8 +91,8 @@ void check_lubrication_steps(const Case& c, const io::YamlDocument& document) {
 double volume_to_place(const Case& c) {
   double volume = 0.0;
   for (const beds::Population& grains : c.grains)
-    volume +=
-        grains.shape ? static_cast<double>(grains.count) * grains.volume_of(grains.room_of_all()) : grains.volume();
+    volume += grains.volume() *
+              (grains.shape ? grains.volume_of(grains.room_of_all()) / grains.volume_of(grains.coarsest()) : 1.0);
   return volume;
 }
 

@@ -1,5 +1,6 @@
 #include "driver/plan/check_report.hpp"
 
+#include "beds/population/population_clumps.hpp"
 #include "beds/population_rows.hpp"
 #include "beds/supplies.hpp"
 #include "core/base/error.hpp"
@@ -120,21 +121,41 @@ void add_overlaps(const Case& c, Lines& lines) {
                               100.0 * overlaps.in_impact, weight.empty() ? "of a diameter " : "", overlaps.speed));
 }
 
-void add_grains(const Case& c, Lines& lines) {
-  for (const beds::Population& population : c.grains) {
-    const double smallest = population.smallest_diameter(), largest = population.largest_diameter();
-    const std::string sizes = smallest == largest ? fmt::format("{:g} m", smallest)
-                                                  : fmt::format("{:g} to {:g} m, median by mass {:g} m", smallest,
-                                                                largest, population.diameter);
-    const std::string what = population.shape
-                                 ? fmt::format("clumps of {} spheres, {:.4g} m long", population.shape->clump.size(),
-                                               population.clumps.largest_extent)
-                             : population.clumps.count > 0 ? fmt::format("({} of them clumps)", population.clumps.count)
-                                                           : std::string();
-    lines.push_back(fmt::format("grains     {} {}of {}, {:g} kg/m^3", population.count, what.empty() ? "" : what + ", ",
-                                sizes, population.density) +
-                    (has_fluid(c) ? fmt::format(": {:.3g} cells a diameter", smallest / c.domain.spacing) : ""));
+std::string from_to(double smallest, double largest) {
+  return smallest == largest ? fmt::format("{:g} m", smallest) : fmt::format("{:g} to {:g} m", smallest, largest);
+}
+
+std::string median_text(const beds::Population& population, bool mixed) {
+  return mixed ? fmt::format(", median by mass {:g} m", population.diameter) : std::string();
+}
+
+// Clumps by the diameter of the sphere (disk) of their volume, spheres by their own.
+std::string sizes_text(const beds::Population& population) {
+  const double smallest = population.smallest_diameter(), largest = population.largest_diameter();
+  if (!population.shape) {
+    const std::string clumps =
+        population.clumps.count > 0 ? fmt::format("({} of them clumps), ", population.clumps.count) : std::string();
+    return clumps + "of " + from_to(smallest, largest) + median_text(population, smallest != largest);
   }
+  const double finest = population.finest(), coarsest = population.coarsest();
+  return fmt::format(
+      "clumps of {} spheres of {}, by volume as large as {} of {}{}, up to {:.4g} m long{}",
+      population.shape->clump.size(), from_to(smallest, largest), population.thickness > 0.0 ? "disks" : "spheres",
+      from_to(finest, coarsest), median_text(population, finest != coarsest), population.clumps.largest_extent,
+      population.thickness > 0.0
+          ? std::string()
+          : fmt::format("; intermediate axis {:.3g} of the size",
+                        beds::intermediate_axis(*beds::clump_shape_of(population)) / population.shape_diameter));
+}
+
+void add_grains(const Case& c, Lines& lines) {
+  for (const beds::Population& population : c.grains)
+    lines.push_back(
+        fmt::format("grains     {} {}, {:g} kg/m^3", population.count, sizes_text(population), population.density) +
+        (has_fluid(c)
+             ? fmt::format(": {:.3g} cells a diameter{}", population.smallest_diameter() / c.domain.spacing,
+                           population.shape && population.shape->clump.size() > 1 ? " of the smallest sphere" : "")
+             : ""));
   if (c.grains.empty()) return;
   lines.push_back("contact    " + contact_text(c));
   add_overlaps(c, lines);

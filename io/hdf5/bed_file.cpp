@@ -10,12 +10,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace thalweg::io {
 namespace {
 
 const std::string format = "thalweg bed 1";
+const std::vector<std::string> vector_components{"x", "y", "z"};
 
 // One grain on its way to the rank that writes it.
 struct BedRow {
@@ -36,41 +40,75 @@ std::vector<BedRow> rows_of(const GrainView& grains) {
   return rows;
 }
 
+struct ClumpRow {
+  GlobalId id;
+  double volume;
+  double position[3], moments[3], orientation[4];
+};
+
+std::vector<ClumpRow> clump_rows_of(const GrainView& grains) {
+  std::vector<ClumpRow> rows;
+  for (const ClumpState& clump : grains.clumps) {
+    rows.push_back({clump.id, clump.volume, {}, {}, {}});
+    const Vec3 moments = clump.moments / (clump.mass / clump.volume);
+    std::copy_n(clump.position.data(), 3, rows.back().position);
+    std::copy_n(moments.data(), 3, rows.back().moments);
+    std::copy_n(clump.orientation.data(), 4, rows.back().orientation);
+  }
+  return rows;
+}
+
 ArrayBox box_of(const RowRange& range, std::uint64_t columns) {
   return columns == 1 ? range.box() : range.box(columns);
 }
 
 class BedWriter {
 public:
-  // share: the grains whose rows this rank writes.
-  BedWriter(MPI_Comm communicator, const std::filesystem::path& path, const RowRange& share)
-      : archive_(communicator, path), labeller_(archive_), first_(rank_of(communicator) == 0), share_(share) {}
+  BedWriter(MPI_Comm communicator, const std::filesystem::path& path)
+      : archive_(communicator, path),
+        labeller_(archive_),
+        communicator_(communicator),
+        first_(rank_of(communicator) == 0) {}
 
-  // values: of the grains of the share.
-  template <typename Number>
-  void column(const std::string& name, const char* unit, const std::vector<Number>& values, std::uint64_t width = 1) {
-    archive_.write("grains/" + name, values, box_of(share_, width));
-    const std::vector<std::uint64_t> rows{share_.box().global_shape[0]};
-    if (width == 1)
-      labeller_.label("grains", name, rows, {unit, {"id"}, {}});
-    else
-      labeller_.label("grains", name, {rows[0], width}, {unit, {"id"}, {"x", "y", "z"}});
+  // The group that columns belong to from now on. rows: as many as this rank writes. Collective.
+  void begin(const std::string& group, std::size_t rows) {
+    group_ = group;
+    share_ = RowRange::of_rows(static_cast<std::int64_t>(rows), communicator_);
   }
-  void scalars(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double BedRow::*field) {
+
+  // values: of the rows of this rank.
+  template <typename Number>
+  void column(const std::string& name, const char* unit, const std::vector<Number>& values,
+              std::vector<std::string> components = {}) {
+    const std::uint64_t width = std::max<std::size_t>(1, components.size());
+    archive_.write(group_ + "/" + name, values, box_of(share_, width));
+    std::vector<std::uint64_t> shape{share_.box().global_shape[0]};
+    if (width > 1) shape.push_back(width);
+    labeller_.label(group_, name, shape, {unit, {"id"}, std::move(components)});
+  }
+  template <typename Row>
+  void numbers(const std::vector<Row>& rows, const std::string& name, GlobalId Row::*field) {
+    std::vector<std::int64_t> values;
+    for (const Row& row : rows) values.push_back(row.*field);
+    column(name, "1", values);
+  }
+  template <typename Row>
+  void scalars(const std::vector<Row>& rows, const std::string& name, const char* unit, double Row::*field) {
     std::vector<double> values;
-    for (const BedRow& row : rows) values.push_back(row.*field);
+    for (const Row& row : rows) values.push_back(row.*field);
     column(name, unit, values);
   }
-  void vectors(const std::vector<BedRow>& rows, const std::string& name, const char* unit, double (BedRow::*field)[3]) {
+  template <typename Row, std::size_t width>
+  void vectors(const std::vector<Row>& rows, const std::string& name, const char* unit, double (Row::*field)[width]) {
     std::vector<double> values;
-    for (const BedRow& row : rows) values.insert(values.end(), row.*field, row.*field + 3);
-    column(name, unit, values, 3);
+    for (const Row& row : rows) values.insert(values.end(), row.*field, row.*field + width);
+    column(name, unit, values, width == 4 ? std::vector<std::string>{"w", "x", "y", "z"} : vector_components);
   }
   template <typename Number>
   void triple(const std::string& name, const char* unit, std::vector<Number> values) {
     if (!first_) values.clear();
     archive_.write("bed/" + name, values, {{3}, {0}, {values.size()}});
-    labeller_.label("bed", name, {3}, {unit, {}, {"x", "y", "z"}});
+    labeller_.label("bed", name, {3}, {unit, {}, vector_components});
   }
   Hdf5Writer& archive() { return archive_; }
   void close() {
@@ -81,8 +119,10 @@ public:
 private:
   Hdf5Writer archive_;
   ArrayLabeller labeller_;
+  MPI_Comm communicator_;
   bool first_;
-  RowRange share_;
+  std::string group_;
+  RowRange share_{0, 1, 0};
 };
 
 // Reads a few numbers on every rank.
@@ -105,27 +145,32 @@ void read_header(Hdf5Reader& file, Bed& bed) {
 }  // namespace
 
 void write_bed_file(MPI_Comm communicator, const std::filesystem::path& path, const Snapshot& snapshot) {
-  const std::vector<BedRow> rows = rows_by_id(communicator, rows_of(snapshot.grains),
-                                              BlockShare(snapshot.grains.end_of_ids(), 1, size_of(communicator)));
+  const BlockShare by_id(snapshot.grains.end_of_ids(), 1, size_of(communicator));
+  const std::vector<BedRow> rows = rows_by_id(communicator, rows_of(snapshot.grains), by_id);
   const PeriodicBox box = snapshot.decomposition->box();
-  BedWriter writer(communicator, path, RowRange::of_rows(static_cast<std::int64_t>(rows.size()), communicator));
+  BedWriter writer(communicator, path);
   writer.archive().attribute("bed/format", format);
   writer.archive().attribute("bed/time", snapshot.time);
   writer.archive().attribute("bed/disk_thickness", snapshot.grains.disk_thickness);
   writer.triple<double>("box", "m", {box.size[0], box.size[1], box.size[2]});
   writer.triple<std::int64_t>("periodic", "1", {box.periodic[0], box.periodic[1], box.periodic[2]});
-  std::vector<std::int64_t> ids, clumps;
-  for (const BedRow& row : rows) {
-    ids.push_back(row.id);
-    clumps.push_back(row.clump);
-  }
-  writer.column("id", "1", ids);
-  if (snapshot.grains.clump_count > 0) writer.column("clump", "1", clumps);
+  writer.begin("grains", rows.size());
+  writer.numbers(rows, "id", &BedRow::id);
+  if (snapshot.grains.clump_count > 0) writer.numbers(rows, "clump", &BedRow::clump);
   writer.scalars(rows, "radius", "m", &BedRow::radius);
   writer.scalars(rows, "density", "kg/m^3", &BedRow::density);
   writer.vectors(rows, "position", "m", &BedRow::position);
   writer.vectors(rows, "velocity", "m/s", &BedRow::velocity);
   writer.vectors(rows, "angular_velocity", "rad/s", &BedRow::angular_velocity);
+  if (snapshot.grains.clump_count > 0) {
+    const std::vector<ClumpRow> clumps = rows_by_id(communicator, clump_rows_of(snapshot.grains), by_id);
+    writer.begin("clumps", clumps.size());
+    writer.numbers(clumps, "id", &ClumpRow::id);
+    writer.scalars(clumps, "volume", "m^3", &ClumpRow::volume);
+    writer.vectors(clumps, "position", "m", &ClumpRow::position);
+    writer.vectors(clumps, "moments", "m^5", &ClumpRow::moments);
+    writer.vectors(clumps, "orientation", "1", &ClumpRow::orientation);
+  }
   writer.close();
 }
 
@@ -154,6 +199,56 @@ RowRange share_of_bed(Hdf5Reader& file, const std::string& clumps, std::int64_t 
   return share;
 }
 
+namespace {
+
+// Throws InputError for what no clump can have.
+void check_body(const BedBody& body, GlobalId clump) {
+  const auto& [w, x, y, z] = body.orientation;
+  constexpr double rounding = 1e-6;
+  const bool good = body.volume > 0.0 && std::isfinite(body.volume) && body.from_first.allFinite() &&
+                    body.moments.allFinite() && body.moments.minCoeff() > 0.0 &&
+                    std::abs(w * w + x * x + y * y + z * z - 1.0) < rounding;
+  if (!good)
+    throw InputError(
+        fmt::format("clump {} of the file has a volume of {:g} m^3 and moments of {:g}, {:g} and {:g} m^5; all must be "
+                    "positive and finite, and its orientation a unit quaternion",
+                    clump, body.volume, body.moments[0], body.moments[1], body.moments[2]));
+}
+
+// Gives the first member of every clump its body. The clumps of the ranks follow each other as their members do.
+void read_bodies(Hdf5Reader& file, Bed& bed, const Ranks& ranks) {
+  std::vector<BedGrain*> first;
+  for (std::size_t n = 0; n < bed.grains.size(); ++n)
+    if (bed.grains[n].clump >= 0 && (n == 0 || bed.grains[n].clump != bed.grains[n - 1].clump))
+      first.push_back(&bed.grains[n]);
+  const RowRange share = ranks.range_of(static_cast<std::int64_t>(first.size()));
+  if (file.shape("clumps/id").at(0) != static_cast<std::uint64_t>(share.count))
+    throw InputError(fmt::format("The bed file has {} rows of clumps, and its grains belong to {}.",
+                                 file.shape("clumps/id").at(0), share.count));
+  const auto id = read_column<std::int64_t>(file, "clumps/id", share);
+  const auto volume = read_column<double>(file, "clumps/volume", share);
+  const auto position = read_column<double>(file, "clumps/position", share, 3);
+  const auto moments = read_column<double>(file, "clumps/moments", share, 3);
+  const auto orientation = read_column<double>(file, "clumps/orientation", share, 4);
+  const PeriodicBox box{bed.box, bed.periodic};
+  ranks.on_all([&] {
+    for (std::size_t n = 0; n < first.size(); ++n) {
+      if (id[n] != first[n]->clump)
+        throw InputError(
+            fmt::format("The bed file has a row for clump {} where that of {} should be.", id[n], first[n]->clump));
+      const double* q = &orientation[4 * n];
+      const BedBody body{volume[n],
+                         box.difference(Vec3(&position[3 * n]), first[n]->position),
+                         Vec3(&moments[3 * n]),
+                         {q[0], q[1], q[2], q[3]}};
+      check_body(body, id[n]);
+      first[n]->body = std::make_shared<const BedBody>(body);
+    }
+  });
+}
+
+}  // namespace
+
 Bed read_bed_file(const std::filesystem::path& path, const Ranks& ranks) {
   Hdf5Reader file(ranks.communicator(), path);
   if (!file.has("bed/format") || file.text_attribute("bed/format") != format)
@@ -174,6 +269,7 @@ Bed read_bed_file(const std::filesystem::path& path, const Ranks& ranks) {
   for (std::size_t n = 0; n < id.size(); ++n)
     bed.grains.push_back(
         {id[n], radius[n], density[n], Vec3(&position[3 * n]), Vec3(&velocity[3 * n]), Vec3(&spin[3 * n]), clump[n]});
+  if (file.has("clumps/id")) read_bodies(file, bed, ranks);
   return bed;
 }
 

@@ -2,9 +2,11 @@
 //
 // HDF5. Group `bed`: attributes format, time (s) and disk_thickness (m; 0: spheres), datasets box (m) and periodic (0
 // or 1 along x, y, z). Group `grains`, one row a grain in order of id: id, radius, density, position, velocity,
-// angular_velocity; where there are clumps, also clump: the id of the clump a member belongs to, -1 for others. A clump
-// is the union of its members; their density is its own. Every dataset has its labels (labelled_arrays.hpp). The bytes
-// depend on the grains alone, not on the number of ranks.
+// angular_velocity; where there are clumps, also clump: the id of the clump a member belongs to, -1 for others. Group
+// `clumps`, one row a clump in order of id: id, volume (m^3), position of the centre (m), moments (m^5, about the
+// principal axes, at 1 kg/m^3) and orientation (w, x, y, z, of these axes); a file without it has clumps that are the
+// unions of their members. Members have the density of their clump. Every dataset has its labels (labelled_arrays.hpp).
+// The bytes depend on the grains alone, not on the number of ranks.
 #pragma once
 
 #include "core/parallel/ranks.hpp"

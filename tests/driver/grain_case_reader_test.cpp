@@ -72,9 +72,38 @@ TEST(GrainCaseReader, ClumpsHaveTheVolumeOfTheirUnion) {
   EXPECT_LT(c.grains[0].lightest_mass(), 2500.0 * volume);
   EXPECT_GT(c.grains[0].lightest_mass(), 0.25 * 2500.0 * volume);
   EXPECT_EQ(read(resolved_yaml(c)), c);
-  EXPECT_THROW(read(flume, {twins[0], "grains.0.diameter=4e-3"}), InputError);
   EXPECT_THROW(read(flume, {twins[0], "grains.0.orientation.axis=[0, 0, 0]"}), InputError);
   EXPECT_THROW(read(flume, {twins[0], "grains.0.motion={velocity: [0.1, 0, 0]}"}), InputError);
+}
+
+// The size of a clump is the diameter of the sphere of its volume, however large its shape is given: twins of radius R
+// have the volume 4 pi/3 R^3 (2 - 5/16).
+TEST(GrainCaseReader, ClumpsTakeSizesAsSpheresDo) {
+  const std::string twins =
+      "grains=[{shape: {clump: [{position: [0, 0, 0], diameter: 1}, {position: [0, 0, 0.5], diameter: 1}]}, density: "
+      "2500, count: 20, diameter: ";
+  const double member = std::cbrt(1.0 / (2.0 - 5.0 / 16.0));  // diameter over that of the clump
+  const Case one = read(flume, {twins + "3e-3}]"});
+  EXPECT_EQ(one.grains[0].diameter, 3e-3);
+  EXPECT_NEAR(one.grains[0].volume() / (20.0 * std::numbers::pi / 6.0 * 27e-9), 1.0, 1e-12);
+  EXPECT_NEAR(one.grains[0].largest_diameter(), member * 3e-3, 1e-14);
+  EXPECT_NEAR(one.grains[0].largest_extent(), 1.5 * member * 3e-3, 1e-14);
+  EXPECT_EQ(read(resolved_yaml(one)), one);
+
+  const std::string mixed = "{sieve: {sizes: [2e-3, 4e-3], finer: [0, 1]}}}]";
+  const Case clumps = read(flume, {twins + mixed});
+  const Case spheres = read(flume, {"grains=[{density: 2500, count: 20, diameter: " + mixed});
+  const beds::Population &clump = clumps.grains[0], &sphere = spheres.grains[0];
+  EXPECT_EQ(clump.diameters, sphere.diameters);
+  EXPECT_EQ(clump.diameter, sphere.diameter);
+  EXPECT_NEAR(clump.volume() / sphere.volume(), 1.0, 1e-12);
+  EXPECT_NEAR(clump.smallest_diameter() / (member * sphere.smallest_diameter()), 1.0, 1e-12);
+  EXPECT_NEAR(clump.largest_diameter() / (member * sphere.largest_diameter()), 1.0, 1e-12);
+  EXPECT_NEAR(clump.clumps.largest_extent / (1.5 * clump.largest_diameter()), 1.0, 1e-12);
+  // The smallest is the lightest to the touch, in proportion to its mass.
+  const double lighter = std::pow(sphere.smallest_diameter() / 3e-3, 3);
+  EXPECT_NEAR(clump.lightest_mass() / (lighter * one.grains[0].lightest_mass()), 1.0, 1e-12);
+  EXPECT_EQ(read(resolved_yaml(clumps)), clumps);
 }
 
 // Grain n of a lognormal population of N lies at the share (n + 1/2)/N of the cut distribution, in order of size.

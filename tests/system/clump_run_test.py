@@ -132,7 +132,6 @@ analysis: {transport_rate: {}}
 
     def test_what_cannot_be_is_refused(self):
         for setting, words in (
-                ("grains.0.diameter=4.0e-3", ("grains.0.diameter", "members")),
                 ("grains.1.orientation={axis: [0, 0, 1], angle: 1.0}", ("grains.1.orientation", "spheres")),
                 ("grains.0.shape.clump=[]", ("grains.0.shape.clump",)),
                 ("run.grain_integrator=gear", ("run.grain_integrator", "velocity_verlet")),

@@ -68,6 +68,46 @@ output: {checkpoint: {every: 0.01}}
         self.run_well("run", self.case, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=2)
         self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("parts").read_bytes())
 
+    SIZES = ("--set", "grains.0.shape={stl: triaxial.stl, spheres: 6}", "--set",
+             "grains.0.diameter={sieve: {sizes: [2.5e-3, 5.0e-3], finer: [0, 1]}}")
+
+    def test_sizes_are_those_of_spheres_of_the_same_volume(self):
+        """Masses of clumps are those of spheres with the same sieve curve and seed; moments grow with d^5."""
+        self.run_well("run", self.case, *self.SIZES)
+        self.run_well("run", self.case, "--set", "grains.0.shape=null", *self.SIZES[2:], "--out", "spheres")
+        with h5py.File(self.last_checkpoint("run")) as saved, h5py.File(self.last_checkpoint("spheres")) as spheres:
+            mass, moments = saved["grains/clump_mass"][:, 0], saved["grains/clump_moments"][:]
+            self.assertLess(abs(mass / spheres["grains/mass"][:] - 1.0).max(), 1e-12)
+            self.assertGreater(mass.max() / mass.min(), 2.0)
+            self.assertLess(abs(moments / moments[0] / (mass / mass[0])[:, None] ** (5.0 / 3.0) - 1.0).max(), 1e-12)
+        self.assertIn("by volume as large as spheres of 0.00", self.thalweg("check", self.case, *self.SIZES).stdout)
+        # The case that is kept, two ranks and a restart make the same run.
+        self.run_well("run", self.folder / "run/case.yaml", "--out", "again")
+        self.run_well("run", self.case, *self.SIZES, "--until", "0.01", "--out", "parts", ranks=2)
+        self.run_well("run", self.case, *self.SIZES, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=4)
+        for other in ("again", "parts"):
+            self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
+
+    def test_a_bed_keeps_mass_and_moments_of_the_surfaces(self):
+        self.run_well("run", self.case, *self.SIZES)
+        with h5py.File(self.folder / "run/bed.h5") as bed:
+            self.assertEqual(bed["clumps/moments"].attrs["units"], b"m^5")
+            volumes = bed["clumps/volume"][:]
+        bed = "grains=[{placement: {file: run/bed.h5}}]"
+        self.run_well("run", self.case, "--set", bed, "--out", "more")
+        with h5py.File(self.last_checkpoint("run")) as saved, h5py.File(self.last_checkpoint("more")) as more:
+            self.assertLess(abs(saved["grains/clump_mass"][:, 0] / DENSITY / volumes - 1.0).max(), 1e-12)
+            for name in ("mass", "moments", "volume"):
+                ratio = more[f"grains/clump_{name}"][:] / saved[f"grains/clump_{name}"][:]
+                self.assertLess(abs(ratio - 1.0).max(), 1e-12, name)
+        # On several ranks, and from a checkpoint without the bed, the same run.
+        self.run_well("run", self.case, "--set", bed, "--out", "two", ranks=4)
+        self.run_well("run", self.case, "--set", bed, "--until", "0.01", "--out", "parts")
+        (self.folder / "run/bed.h5").unlink()
+        self.run_well("run", self.case, "--set", bed, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=2)
+        for other in ("two", "parts"):
+            self.assertEqual(self.last_checkpoint("more").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
+
     def test_a_clump_is_described_and_written(self):
         done = self.thalweg("clump", "prolate.stl", "--spheres", "5", "--scale", str(DIAMETER))
         figures = dict(re.findall(r"^  (sphericity|Corey shape factor|axes) +([\d., e+-]+)", done.stdout, re.M))
@@ -90,6 +130,7 @@ output: {checkpoint: {every: 0.01}}
                 ("{stl: pebble.stl, spheres: 3, clump: [{position: [0, 0, 0], diameter: 0.004}]}", ("clump",)),
                 ("{clump: [{position: [0, 0, 0], diameter: 0.004}], spheres: 3}", ("spheres", "STL"))):
             self.assert_refused("check", self.case, "--set", f"grains.0.shape={shape}", words=words)
+        self.assert_refused("check", self.case, "--set", "grains.0.diameter=0.004", words=("grains.0.shape.scale", "one"))
 
 
 if __name__ == "__main__":

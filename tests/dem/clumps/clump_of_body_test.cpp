@@ -25,6 +25,22 @@ TEST(ClumpOfBody, OfItsUnionIsTheClumpItself) {
   for (std::size_t n = 0; n < three.size(); ++n) EXPECT_EQ(of_body.members[n].position, own.members[n].position);
 }
 
+// Volume grows with the third power of the size and moments with the fifth; of disks with the second and the fourth.
+TEST(ClumpOfBody, ScaledIsTheSameShape) {
+  const ClumpShape shape = clump_shape(three), twice = scaled(shape, 2.0);
+  EXPECT_EQ(twice.volume, 8.0 * shape.volume);
+  EXPECT_EQ(twice.moments, 32.0 * shape.moments);
+  EXPECT_EQ(twice.bounding_radius, 2.0 * shape.bounding_radius);
+  EXPECT_EQ(twice.members[1].position, 2.0 * shape.members[1].position);
+  EXPECT_EQ(twice.members[1].radius, 2.0 * shape.members[1].radius);
+  EXPECT_EQ(twice.equivalent_radius(), 2.0 * shape.equivalent_radius());
+  const std::vector<PlacedSphere> pair{{{0.01, 0, 0}, 2e-3}, {{0.013, 0, 0}, 2e-3}};
+  const ClumpShape disks = clump_shape(pair, 1e-3), wide = scaled(disks, 2.0);
+  EXPECT_EQ(wide.volume, 4.0 * disks.volume);
+  EXPECT_EQ(wide.moments, 16.0 * disks.moments);
+  EXPECT_EQ(wide.thickness, disks.thickness);
+}
+
 // One sphere that stands for an ellipsoid of half axes 3, 2 and 1 mm, turned: mass and moments are those of theory, on
 // the way to another rank too.
 TEST(ClumpOfBody, HasMassAndMomentsOfTheBody) {
