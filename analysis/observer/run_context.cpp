@@ -24,4 +24,10 @@ bool GrainContext::any_clumps() const {
   return std::any_of(populations.begin(), populations.end(), [](const PopulationContext& some) { return some.clumps; });
 }
 
+GlobalId GrainContext::first_member(GlobalId id) const {
+  for (const PopulationContext& some : populations)
+    if (id >= some.first && id < some.end) return id - (id - some.first) % some.members;
+  return id;
+}
+
 }  // namespace thalweg::analysis

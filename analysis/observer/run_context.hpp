@@ -37,6 +37,7 @@ struct PopulationContext {
   std::function<Vec3(double time)> pivot;  // m, of its torque at a time (s)
   bool held = false;                       // moves as prescribed, or not at all
   bool clumps = false;
+  std::int64_t members = 1;  // of each of its clumps; 1 where they are not all alike, too
 };
 
 struct HeldGrains {
@@ -67,6 +68,8 @@ struct GrainContext {
   std::vector<HeldGrains> held() const;
   bool any_free() const;
   bool any_clumps() const;
+  GlobalId first_member(
+      GlobalId id) const;  // of the clump of an id, as far as the populations tell; else the id itself
 };
 
 struct RunContext {

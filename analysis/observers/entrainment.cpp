@@ -25,26 +25,27 @@ void Entrainment::observe(const Snapshot& snapshot) {
   homes_->grow(snapshot.grains.end_of_ids());
   memory_.resize(homes_->size());
   const bool due = settings_.grains.empty() && snapshot.step - chosen_step_ >= settings_.refresh_steps;
-  if (chosen_step_ < 0 || due) choose(snapshot);
-  count(take_samples(snapshot), snapshot.time);
+  const BodiesHere bodies(snapshot);
+  if (chosen_step_ < 0 || due) choose(snapshot, bodies);
+  count(take_samples(snapshot, bodies), snapshot.time);
 }
 
-void Entrainment::choose(const Snapshot& snapshot) {
+void Entrainment::choose(const Snapshot& snapshot, const BodiesHere& bodies) {
   chosen_step_ = snapshot.step;
-  const GrainView& grains = snapshot.grains;
-  std::vector<char> chosen(grains.id.size(), 0);
+  const std::span<const GlobalId> ids = bodies.ids();
+  std::vector<char> chosen(ids.size(), 0);
   if (settings_.grains.empty()) {
     const double lowest = layers_.bed(snapshot).height - settings_.diameter;
-    for (std::size_t n = 0; n < chosen.size(); ++n)
-      chosen[n] = grains.position[n].z() > lowest && !is_held(settings_.held, grains.id[n]);
+    for (std::size_t b = 0; b < chosen.size(); ++b)
+      chosen[b] = bodies.position(b).z() > lowest && !is_held(settings_.held, ids[b]);
   } else {
-    for (std::size_t n = 0; n < chosen.size(); ++n)
-      chosen[n] = std::binary_search(settings_.grains.begin(), settings_.grains.end(), grains.id[n]);
+    for (std::size_t b = 0; b < chosen.size(); ++b)
+      chosen[b] = std::binary_search(settings_.grains.begin(), settings_.grains.end(), ids[b]);
   }
-  watch(grains.id, std::move(chosen));
+  watch(ids, std::move(chosen));
 }
 
-// ids: of the grains here. Grains watched before are remembered on.
+// ids: of the grains and clumps here. Those watched before are remembered on.
 void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen) {
   struct Watched {
     GlobalId id;
@@ -65,17 +66,24 @@ void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen)
 
 // Brings states and contacts of the watched grains to their homes. Returns the ids of those here that have started,
 // ascending.
-std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot) {
+std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot, const BodiesHere& bodies) {
   const GrainView& grains = snapshot.grains;
-  const std::vector<char>& chosen = watched_here_.flags(
-      communicator_, grains.id, *homes_, [this](GlobalId id) { return memory_[homes_->location_of(id)].watched; });
+  const std::vector<char>& watched = watched_here_.flags(
+      communicator_, bodies.ids(), *homes_, [this](GlobalId id) { return memory_[homes_->location_of(id)].watched; });
   std::vector<Seen> seen;
+  for (std::size_t b = 0; b < watched.size(); ++b) {
+    if (watched[b] == 0) continue;
+    const BodiesHere::State state = bodies.state(b);
+    seen.push_back({bodies.ids()[b], state.radius, state.mass, state.record});
+  }
+  std::vector<char> chosen(grains.id.size(), 0);
+  for (std::size_t n = 0; n < chosen.size(); ++n) chosen[n] = watched[bodies.body_of(n)];
   std::vector<TouchRow> touches;
-  for (std::size_t n = 0; n < chosen.size(); ++n)
-    if (chosen[n] != 0) seen.push_back({grains.id[n], grains.radius[n], grains.mass[n], record_of(grains, n)});
   if (snapshot.contacts)
     snapshot.contacts->for_each_contact_of(chosen, [&](std::size_t n, const ContactEnd& end) {
-      touches.push_back(row_of(grains.id[n], {end.partner, end.arm, end.force, end.to_partner.norm()}));
+      const GlobalId member = grains.is_member(n) ? grains.id[n] : -1;
+      touches.push_back(row_of(bodies.ids()[bodies.body_of(n)], {end.partner, end.arm, end.force, end.to_partner.norm(),
+                                                                 member, bodies.from_centre(n)}));
     });
   std::vector<GlobalId> came;
   for (const Seen& one : homes_->bring_home(seen)) {

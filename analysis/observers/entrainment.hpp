@@ -11,6 +11,8 @@
 // for events with a hinge and a torque of the fluid that pushes the way the grain went. Events count as independent:
 // the error of the mean share is its deviation over sqrt(events).
 //
+// A clump is one grain, by the id of its first member.
+//
 // What is remembered, and which grains are watched, lies at the home of the grain's id (distribution_by_id.hpp).
 #pragma once
 
@@ -18,6 +20,7 @@
 #include "analysis/observer/saved_settings.hpp"
 #include "analysis/observers/entrainment_event.hpp"
 #include "analysis/tools/bed_layers.hpp"
+#include "analysis/tools/bodies_here.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/grain_ring.hpp"
 #include "analysis/tools/watched_here.hpp"
@@ -56,6 +59,7 @@ struct EntrainmentSettings : EntrainmentKeys {
   double moving_speed = 0.0;        // m/s
   std::vector<HeldGrains> held;     // grains that cannot move
   std::vector<GlobalId> obstacles;  // ids, as in BedLayers
+  bool clumps = false;              // there are some, or may be
   GrainContext::Force weight;       // submerged
   GrainContext::Force buoyancy;     // as in torques_about()
 };
@@ -80,7 +84,8 @@ public:
   // largest_torque_ratio (1, as Entraining has them). Arrays: id, rest_position (m), submerged_weight (N); [sample]:
   // time and those of GrainRecord; with a hinge hinge_partners, hinge_points (m), hinge_axis, and [sample]
   // fluid_torque, couple_torque, critical_torque (N m). Of each contact of each sample: contact_sample,
-  // contact_partner, contact_point, contact_partner_position (m), contact_force_each (N).
+  // contact_partner, contact_point, contact_partner_position (m), contact_force_each (N); of clumps also
+  // contact_member, the id of the member that touches.
   bool has_records() const override { return true; }
   Records take_records() override;
 
@@ -117,9 +122,9 @@ private:
   };
 
   Shares shares() const;
-  void choose(const Snapshot& snapshot);
+  void choose(const Snapshot& snapshot, const BodiesHere& bodies);
   void watch(std::span<const GlobalId> ids, std::vector<char> chosen);
-  std::vector<GlobalId> take_samples(const Snapshot& snapshot);
+  std::vector<GlobalId> take_samples(const Snapshot& snapshot, const BodiesHere& bodies);
   void remember(Memory& memory, const Seen& seen, double time) const;
   bool starts(Memory& memory) const;
   void count(const std::vector<GlobalId>& started, double time);
@@ -139,8 +144,9 @@ private:
   std::int64_t seen_step_ = -1, chosen_step_ = -1;
   std::int64_t events_ = 0, shares_ = 0;               // over all ranks
   double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;  // the same
-  static constexpr std::uint64_t memory_columns = 9, sample_columns = 20, touch_columns = 8;
-  std::vector<Event> pending_;  // since take_records(); on rank 0
+  static constexpr std::uint64_t memory_columns = 9, sample_columns = 20;
+  std::uint64_t touch_columns() const { return settings_.clumps ? 12 : 8; }  // with member and from_centre, or without
+  std::vector<Event> pending_;                                               // since take_records(); on rank 0
 };
 
 }  // namespace thalweg::analysis

@@ -29,7 +29,8 @@ void add_states(Event& event, const GrainRing& ring) {
 }
 
 void add_contacts(Event& event, const GrainRing& ring) {
-  WholeNumbers number{"contact_sample", "contact", {}}, partner{"contact_partner", "contact", {}};
+  WholeNumbers number{"contact_sample", "contact", {}}, partner{"contact_partner", "contact", {}},
+      member{"contact_member", "contact", {}};
   Profile point = vectors("contact_point", "m", "contact"), place = vectors("contact_partner_position", "m", "contact"),
           force = vectors("contact_force_each", "N", "contact");
   for (std::size_t n = 0; n < ring.size(); ++n)
@@ -37,12 +38,14 @@ void add_contacts(Event& event, const GrainRing& ring) {
       const Vec3 centre = ring[n][GrainRecord::position];
       number.values.push_back(static_cast<std::int64_t>(n));
       partner.values.push_back(touch.partner);
-      add(point.values, centre + touch.arm);
+      if (touch.member >= 0) member.values.push_back(touch.member);
+      add(point.values, centre + touch.point());
       add(place.values, touch.partner_position(centre));
       add(force.values, touch.force);
     }
   event.numbers.push_back(std::move(number));
   event.numbers.push_back(std::move(partner));
+  if (!member.values.empty()) event.numbers.push_back(std::move(member));
   for (Profile* array : {&point, &place, &force}) {
     set_length(*array);
     event.arrays.push_back(std::move(*array));

@@ -3,6 +3,8 @@
 #include "analysis/observers/transport_rate.hpp"
 #include "core/base/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -10,8 +12,9 @@ namespace thalweg::analysis {
 
 void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
   visit.integer_list("grains", keys.grains,
-                     {.meaning = "ids of the grains, in the order of the populations from 0; else the free ones whose "
-                                 "centre is above the bed's height less one reference diameter",
+                     {.meaning = "ids of the grains, in the order of the populations from 0, of clumps those of their "
+                                 "first members; else the free ones whose centre is above the bed's height less one "
+                                 "reference diameter",
                       .at_least = 0,
                       .example = 0});
   visit.real("from", keys.from, {.unit = "s", .meaning = "start of the observation", .at_least = 0.0});
@@ -32,8 +35,9 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
 
 void check(const EntrainmentKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
-  if (run.grains->any_clumps())
-    throw KeyError("", "it knows grains that are single spheres, and there are clumps; remove the section");
+  for (const GlobalId id : keys.grains)
+    if (const GlobalId clump = run.grains->first_member(id); clump != id)
+      throw KeyError("grains", fmt::format("grain {} is a member of the clump {}; give that number", id, clump));
   if (keys.grains.empty() && run.box.periodic[2])
     throw KeyError("",
                    "a bed has a height above a bottom, and here z is periodic; name the grains, or give "
@@ -51,6 +55,7 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunCo
   settings.window = settings.diameter = run.grains->reference_diameter;
   settings.moving_speed = transport_scales(run).moving_speed();
   settings.held = run.grains->held();
+  settings.clumps = run.grains->any_clumps();
   settings.obstacles = run.grains->obstacles;
   settings.weight = run.grains->submerged_weight;
   settings.buoyancy = run.grains->buoyancy;

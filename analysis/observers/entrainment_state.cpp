@@ -9,6 +9,8 @@ namespace thalweg::analysis {
 
 namespace {
 
+constexpr std::ptrdiff_t of_sphere = 7;  // values of a touch: arm, force and distance; from_centre after them
+
 // This rank's rows among those of all, which lie in the order of ranks. Collective.
 ArrayBox box_of_rows(MPI_Comm communicator, std::int64_t rows, std::uint64_t columns) {
   std::int64_t before = 0;
@@ -68,10 +70,13 @@ void Entrainment::save(ArchiveWriter& archive) const {
   values.clear();
   for (const TouchRow& row : touches) {
     values.push_back(static_cast<double>(row.partner));
-    values.insert(values.end(), row.values.begin(), row.values.end());
+    values.insert(values.end(), row.values.begin(), row.values.begin() + of_sphere);
+    if (!settings_.clumps) continue;
+    values.push_back(static_cast<double>(row.member));
+    values.insert(values.end(), row.values.begin() + of_sphere, row.values.end());
   }
   archive.write("entrainment/touches", std::span<const double>(values),
-                box_of_rows(communicator_, static_cast<std::int64_t>(touches.size()), touch_columns));
+                box_of_rows(communicator_, static_cast<std::int64_t>(touches.size()), touch_columns()));
 }
 
 bool Entrainment::load(ArchiveReader& archive) {
@@ -112,11 +117,17 @@ void Entrainment::restore_rings(ArchiveReader& archive, std::span<const double> 
   const auto samples = read_rows(archive, communicator_, "entrainment/samples", sample_count, sample_columns);
   for (std::size_t n = 0; n < samples.size(); n += sample_columns)
     touch_count += static_cast<std::int64_t>(samples[n + sample_columns - 1]);
-  const auto values = read_rows(archive, communicator_, "entrainment/touches", touch_count, touch_columns);
+  const auto values = read_rows(archive, communicator_, "entrainment/touches", touch_count, touch_columns());
   std::vector<TouchRow> touches;
-  for (std::size_t n = 0; n < values.size(); n += touch_columns) {
-    touches.push_back({0, static_cast<GlobalId>(values[n]), {}});
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n) + 1, touch_columns - 1, touches.back().values.begin());
+  for (auto row = values.begin(); row != values.end(); row += static_cast<std::ptrdiff_t>(touch_columns())) {
+    TouchRow touch{0, static_cast<GlobalId>(*row), -1, {}};
+    std::copy_n(row + 1, of_sphere, touch.values.begin());
+    if (settings_.clumps) {
+      touch.member = static_cast<GlobalId>(row[of_sphere + 1]);
+      std::copy(row + of_sphere + 2, row + static_cast<std::ptrdiff_t>(touch_columns()),
+                touch.values.begin() + of_sphere);
+    }
+    touches.push_back(touch);
   }
   auto next = touches.cbegin();
   const double* sample = samples.data();

@@ -6,10 +6,13 @@
 #include "core/state/contact_stress.hpp"
 #include "core/state/whole_dataset.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace thalweg::analysis {
 
@@ -20,9 +23,17 @@ struct WeightedBody {
   double volume = 0.0, mass = 0.0;  // m^3, kg
   Vec3 velocity = Vec3::Zero();     // m/s
   Mat3 moment = Mat3::Zero();       // N m, sum over contacts of F_a r_b, rows a, columns b
+  // Of a clump: unit vectors along the principal axes of the least and of the largest moment of inertia.
+  Vec3 long_axis = Vec3::Zero(), short_axis = Vec3::Zero();
 };
 
 namespace {
+
+// A principal axis in space.
+Vec3 axis_of(const ClumpState& clump, Eigen::Index number) {
+  const auto& [w, x, y, z] = clump.orientation;
+  return Eigen::Quaterniond(w, x, y, z).toRotationMatrix().col(number);
+}
 
 class WeightedBodies {
 public:
@@ -39,6 +50,11 @@ public:
       clump.volume = state.volume;
       clump.mass = state.mass;
       clump.velocity = state.velocity;
+      Eigen::Index least = 0, largest = 0;
+      state.moments.minCoeff(&least);
+      state.moments.maxCoeff(&largest);
+      clump.long_axis = axis_of(state, least);
+      clump.short_axis = axis_of(state, largest);
     }
   }
 
@@ -57,42 +73,72 @@ private:
 }  // namespace
 
 GrainProfiles::GrainProfiles(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                             const GrainProfilesKeys& keys, double disk_thickness)
+                             const GrainProfilesKeys& keys, double disk_thickness, bool clumps)
     : MeanObserver(communicator, GrainProfilesKeys::section, keys.from, keys.every),
       box_(decomposition.box()),
       width_(disk_thickness > 0.0 ? disk_thickness : box_.size[1]),
       layers_(std::max(1, static_cast<int>(std::lround(box_.size[2] / keys.layer.value_or(layer))))),
       thickness_(box_.size[2] / layers_),
-      sums_(static_cast<std::size_t>(layers_) * quantities, 0.0) {}
+      sums_(static_cast<std::size_t>(layers_) * quantities, 0.0),
+      axes_(clumps ? static_cast<std::size_t>(layers_) * axes_quantities : 0, 0.0) {}
 
 void GrainProfiles::add(const Snapshot& snapshot) {
-  const std::vector<double> sums = reproducible_sums_by_bin(
-      communicator(), layers_, quantities, [this, &snapshot, bodies = WeightedBodies(snapshot)](const TermTaker& take) {
-        for (std::size_t i = 0; i < snapshot.grains.id.size(); ++i) give_parts(snapshot.grains, i, bodies[i], take);
+  const WeightedBodies bodies(snapshot);
+  const GrainView& grains = snapshot.grains;
+  const std::vector<double> sums =
+      reproducible_sums_by_bin(communicator(), layers_, quantities, [&](const TermTaker& take) {
+        for (std::size_t i = 0; i < grains.id.size(); ++i) give_parts(grains, i, bodies[i], take);
       });
   for (std::size_t s = 0; s < sums.size(); ++s) sums_[s] += sums[s];
+  if (axes_.empty()) return;
+  const std::vector<double> axes =
+      reproducible_sums_by_bin(communicator(), layers_, axes_quantities, [&](const TermTaker& take) {
+        for (std::size_t i = 0; i < grains.id.size(); ++i)
+          if (grains.is_member(i)) give_axes(grains, i, bodies[i], take);
+      });
+  for (std::size_t s = 0; s < axes.size(); ++s) axes_[s] += axes[s];
 }
 
-// The quantities of the part of grain i in each layer.
-void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body,
-                               const TermTaker& take) const {
+template <typename Visit>
+void GrainProfiles::for_each_layer(const GrainView& grains, std::size_t i, const Visit& visit) const {
   const double radius = grains.radius[i], bottom = grains.position[i][2] - radius;
-  const Vec3& v = body.velocity;
   const int first = static_cast<int>(std::floor(bottom / thickness_));
   const int last = static_cast<int>(std::floor((bottom + 2.0 * radius) / thickness_));
   for (int layer = first; layer <= last; ++layer) {
     const int inside = box_.periodic[2] ? (layer % layers_ + layers_) % layers_ : layer;
     if (inside < 0 || inside >= layers_) continue;
-    const double part =
-        volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom, (layer + 1) * thickness_ - bottom);
+    visit(inside, volume_between(radius, grains.disk_thickness, layer * thickness_ - bottom,
+                                 (layer + 1) * thickness_ - bottom));
+  }
+}
+
+// The quantities of the part of grain i in each layer.
+void GrainProfiles::give_parts(const GrainView& grains, std::size_t i, const WeightedBody& body,
+                               const TermTaker& take) const {
+  const Vec3& v = body.velocity;
+  for_each_layer(grains, i, [&](int layer, double part) {
     const double share = part / body.spheres, m = share * body.mass;
     const double inside_it = grains.is_member(i) ? share * body.volume : part;
     std::array<double, quantities> row{inside_it, m, m * v[0], m * v[1], m * v[2]};
     for (std::size_t p = 0; p < 6; ++p) row[product + p] = m * v[symmetric_pairs[p][0]] * v[symmetric_pairs[p][1]];
     for (int a = 0; a < 3; ++a) row[flux + a] = inside_it * v[a];
     for (int k = 0; k < 9; ++k) row[contact + k] = share * body.moment(k / 3, k % 3);
-    take(inside, row);
-  }
+    take(layer, row);
+  });
+}
+
+void GrainProfiles::give_axes(const GrainView& grains, std::size_t i, const WeightedBody& body,
+                              const TermTaker& take) const {
+  for_each_layer(grains, i, [&](int layer, double part) {
+    const double inside_it = part / body.spheres * body.volume;
+    std::array<double, axes_quantities> row{inside_it};
+    for (std::size_t p = 0; p < 6; ++p) {
+      const auto& [a, b] = symmetric_pairs[p];
+      row[long_axis + p] = inside_it * body.long_axis[a] * body.long_axis[b];
+      row[short_axis + p] = inside_it * body.short_axis[a] * body.short_axis[b];
+    }
+    take(layer, row);
+  });
 }
 
 std::vector<Diagnostic> GrainProfiles::results() const {
@@ -130,18 +176,42 @@ std::vector<Profile> GrainProfiles::profiles() const {
       kinetic_stress.values.push_back(
           -(sum[product + p] - sum[mass] * u[symmetric_pairs[p][0]] * u[symmetric_pairs[p][1]]) / room);
   }
-  return {z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
+  std::vector<Profile> all{z, fraction, velocity, volume_flux, temperature, contact_stress, kinetic_stress};
+  if (!axes_.empty())
+    for (Profile& profile : axes_profiles()) all.push_back(std::move(profile));
+  return all;
+}
+
+std::vector<Profile> GrainProfiles::axes_profiles() const {
+  const auto n = static_cast<std::uint64_t>(layers_);
+  Profile fraction{"clump_fraction", "1", {"z"}, {}, {n}, {}};
+  Profile long_ones{"long_axis_alignment", "1", {"z"}, symmetric_names, {n, 6}, {}},
+      short_ones{"short_axis_alignment", "1", {"z"}, symmetric_names, {n, 6}, {}};
+  const double room =
+      box_.size[0] * width_ * thickness_ * static_cast<double>(std::max<std::int64_t>(1, measurements()));
+  for (int layer = 0; layer < layers_; ++layer) {
+    const double* sum = axes_.data() + static_cast<std::size_t>(layer) * axes_quantities;
+    const double whole = sum[clump_volume], unit = whole > 0.0 ? 1.0 / whole : 0.0;
+    fraction.values.push_back(whole / room);
+    for (int p = 0; p < 6; ++p) long_ones.values.push_back(unit * sum[long_axis + p]);
+    for (int p = 0; p < 6; ++p) short_ones.values.push_back(unit * sum[short_axis + p]);
+  }
+  return {fraction, long_ones, short_ones};
 }
 
 void GrainProfiles::save_sums(ArchiveWriter& archive, const std::string& group) const {
   save_count(archive, group);
   write_whole(archive, communicator(), group + "/sums", std::span<const double>(sums_), shape());
+  if (!axes_.empty())
+    write_whole(archive, communicator(), group + "/axes", std::span<const double>(axes_), axes_shape());
 }
 
 bool GrainProfiles::load_sums(ArchiveReader& archive, const std::string& group) {
   if (archive.shape(group + "/sums") != shape()) return false;
+  if (!axes_.empty() && (!archive.has(group + "/axes") || archive.shape(group + "/axes") != axes_shape())) return false;
   load_count(archive, group);
   sums_ = read_whole<double>(archive, group + "/sums");
+  if (!axes_.empty()) axes_ = read_whole<double>(archive, group + "/axes");
   return true;
 }
 
@@ -159,7 +229,7 @@ void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,
-                                         keys, run.grains->disk_thickness);
+                                         keys, run.grains->disk_thickness, run.grains->any_clumps());
 }
 
 }  // namespace thalweg::analysis

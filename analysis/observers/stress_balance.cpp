@@ -8,9 +8,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <stdexcept>
 
 namespace thalweg::analysis {
+
+// The grains as the sums take them; the members of a clump all have what the clump has.
+class BalancedBodies {
+public:
+  struct Body {
+    double spheres = 0.0;                           // m^3, of all that share what follows: one, or the members
+    double volume = 0.0, mass = 0.0, radius = 0.0;  // m^3, kg, m, of the sphere of the volume
+    Vec3 velocity = Vec3::Zero();                   // m/s, of the centre
+    Vec3 by_fluid = Vec3::Zero(), by_contacts = Vec3::Zero();                           // N
+    Mat3 contacts = Mat3::Zero(), of_fluid = Mat3::Zero(), lubrication = Mat3::Zero();  // N m, about the centre
+  };
+
+  explicit BalancedBodies(const Snapshot& snapshot)
+      : grains_(snapshot.grains), contacts_(contact_moments(snapshot)), lubrication_(lubrication_moments(snapshot)) {
+    std::map<GlobalId, Vec3> centres;
+    for (const ClumpState& state : grains_.clumps) {
+      Body& clump = clumps_[state.id];
+      clump.volume = state.volume;
+      clump.mass = state.mass;
+      clump.radius = std::cbrt(0.75 / std::numbers::pi * state.volume);
+      clump.velocity = state.velocity;
+      centres[state.id] = state.position;
+    }
+    for (std::size_t i = 0; i < grains_.id.size(); ++i) {
+      if (!grains_.is_member(i)) continue;
+      const Body member = alone(i);
+      Body& clump = clumps_.at(grains_.clump[i]);
+      const Vec3 arm = snapshot.decomposition->box().difference(grains_.position[i], centres.at(grains_.clump[i]));
+      clump.spheres += member.spheres;
+      clump.by_fluid += member.by_fluid;
+      clump.by_contacts += member.by_contacts;
+      clump.of_fluid += member.of_fluid + member.by_fluid * arm.transpose();
+      clump.contacts += member.contacts;  // whose arms are from the centre of the clump
+      clump.lubrication += member.lubrication;
+    }
+  }
+
+  Body operator[](std::size_t i) const { return grains_.is_member(i) ? clumps_.at(grains_.clump[i]) : alone(i); }
+
+private:
+  Body alone(std::size_t i) const {
+    const double volume = volume_of(grains_.radius[i], 0.0);
+    Body body{volume, volume, grains_.mass[i], grains_.radius[i], grains_.velocity[i]};
+    body.by_fluid = grains_.fluid_force[i];
+    body.by_contacts = grains_.contact_force[i];
+    body.contacts = contacts_[i];
+    if (!grains_.fluid_stress.empty()) body.of_fluid = volume * grains_.fluid_stress[i];
+    body.lubrication = lubrication_[i];
+    return body;
+  }
+
+  const GrainView& grains_;
+  std::vector<Mat3> contacts_, lubrication_;
+  std::map<GlobalId, Body> clumps_;
+};
 
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
                              const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held)
@@ -62,31 +119,32 @@ void StressBalance::add_fluid(const MomentumBudget& budget) {
 
 void StressBalance::add_grains(const Snapshot& snapshot) {
   if (snapshot.grains.global_count == 0) return;
-  const Moments moments{contact_moments(snapshot), lubrication_moments(snapshot)};
+  const BalancedBodies bodies(snapshot);
   const std::vector<double> sums =
       reproducible_sums_by_bin(communicator(), layers_.count(), grain_columns,
-                               [&](const TermTaker& take) { give_parts(snapshot, moments, take); });
+                               [&](const TermTaker& take) { give_parts(snapshot, bodies, take); });
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
 }
 
 // A row of grain_columns of each grain's part in each layer.
-void StressBalance::give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const {
+void StressBalance::give_parts(const Snapshot& snapshot, const BalancedBodies& bodies, const TermTaker& take) const {
   const GrainView& grains = snapshot.grains;
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
-    const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = volume_of(radius, 0.0);
-    const Vec3 &v = grains.velocity[i], &by_fluid = grains.fluid_force[i], &by_contacts = grains.contact_force[i];
-    const Mat3 of_fluid = grains.fluid_stress.empty() ? Mat3(Mat3::Zero()) : Mat3(whole * grains.fluid_stress[i]);
+    const BalancedBodies::Body body = bodies[i];
+    const double radius = grains.radius[i], lowest = grains.position[i][2] - radius, whole = body.spheres;
+    const Vec3 &v = body.velocity, &by_fluid = body.by_fluid, &by_contacts = body.by_contacts;
     const double outer = is_held(held_, grains.id[i]) ? -(by_fluid.x() + by_contacts.x())
-                                                      : scales_.body_force(grains.mass[i], radius).x() +
-                                                            whole * snapshot.momentum->driving_of_grains.x();
+                                                      : scales_.body_force(body.mass, body.radius).x() +
+                                                            body.volume * snapshot.momentum->driving_of_grains.x();
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
       const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
-      const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * grains.mass[i];
+      const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * body.mass;
       const double lever = (sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part) / whole;
-      std::array<double, grain_columns> row{part, m, m * v[0], m * v[1], m * v[2]};
+      std::array<double, grain_columns> row{grains.is_member(i) ? share * body.volume : part, m, m * v[0], m * v[1],
+                                            m * v[2]};
       double* term = row.data() + momentum_flux;
       for (const auto& [a, b] : symmetric_pairs) *term++ = m * v[a] * v[b];
-      for (const Mat3* moment : {&moments.contacts[i], &of_fluid, &moments.lubrication[i]})
+      for (const Mat3* moment : {&body.contacts, &body.of_fluid, &body.lubrication})
         for (int k = 0; k < 9; ++k) *term++ = share * (*moment)(k / 3, k % 3);
       for (const double value : {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
                                  share * outer, lever * by_fluid[0], lever * by_contacts[0], lever * outer})
@@ -159,10 +217,6 @@ void check(const StressBalanceKeys& keys, const RunContext& run) {
     throw KeyError("",
                    "stress is summed from the top down, and z is periodic; remove the section or give "
                    "domain.boundaries bottom and top");
-  if (run.grains->any_clumps())
-    throw KeyError("",
-                   "it knows grains that are single spheres, and there are clumps; remove the section or "
-                   "use grain_profiles");
   require_full_gravity_from(run, keys.from);
 }
 

@@ -3,7 +3,9 @@
 // layers"). Stresses are per area of the whole layer, fluid and grains together, so that they add up; positive in
 // tension, the force's component first.
 //
-// Grains by volume shares, V_il the part of grain i within layer l, A b the layer's volume (grain_profiles.hpp):
+// Grains by volume shares, V_il the part of grain i within layer l, A b the layer's volume (grain_profiles.hpp); a
+// clump is one grain, with arms from its centre, and its members share what it has as their own volumes are to each
+// other:
 //   contact stress         (1/Ab) sum_i (V_il/V_i) sum_c F_a r_b              (Christoffersen et al. 1981)
 //   fluid part on grains   (1/Ab) sum_i (V_il/V_i) sum_links F_a x_b          (Zhang et al. 2022, eq. 13)
 //   lubrication stress     as the contacts', of the forces between near surfaces (dem/contact/lubrication.hpp)
@@ -64,6 +66,8 @@ struct BalanceScales {
   double sound_speed = 0.0;             // m/s, of the lattice: gives the pressure
 };
 
+class BalancedBodies;
+
 class StressBalance : public MeanObserver {
 public:
   // layer: m, where the keys have none; layers are of whole planes of cells. z must not be periodic.
@@ -110,9 +114,6 @@ private:
   };
   using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
   struct LayerMeans;
-  struct Moments {  // N m, of each grain
-    std::vector<Mat3> contacts, lubrication;
-  };
   struct Difference {
     double share = 0.0;  // share of the bed stress
     int layer = 0;
@@ -124,7 +125,7 @@ private:
   bool load_sums(ArchiveReader& archive, const std::string& group) override;
   void add_fluid(const MomentumBudget& budget);
   void add_grains(const Snapshot& snapshot);
-  void give_parts(const Snapshot& snapshot, const Moments& moments, const TermTaker& take) const;
+  void give_parts(const Snapshot& snapshot, const BalancedBodies& bodies, const TermTaker& take) const;
   void add_grains_at_walls(const Snapshot& snapshot);
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;

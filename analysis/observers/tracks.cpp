@@ -6,12 +6,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 namespace thalweg::analysis {
 
-Tracks::Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every)
-    : communicator_(communicator), grains_(std::move(grains)), every_(every), since_(GrainRecord::quantities) {}
+Tracks::Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps)
+    : communicator_(communicator),
+      grains_(std::move(grains)),
+      every_(every),
+      clumps_(clumps),
+      since_(GrainRecord::quantities) {}
 
 void Tracks::observe(const Snapshot& snapshot) {
   if (snapshot.step <= seen_step_) return;
@@ -33,6 +39,27 @@ void Tracks::observe(const Snapshot& snapshot) {
     last_ = std::move(records);
   }
   last_time_ = snapshot.time;
+  if (clumps_) record_orientations(snapshot);
+}
+
+void Tracks::record_orientations(const Snapshot& snapshot) {
+  struct Turned {
+    GlobalId id;
+    std::array<double, 4> orientation;
+  };
+  const GrainView& grains = snapshot.grains;
+  std::map<GlobalId, std::array<double, 4>> of_clump;
+  for (const ClumpState& clump : grains.clumps) of_clump[clump.id] = clump.orientation;
+  std::vector<Turned> rows;
+  for (std::size_t n = 0; n < grains.id.size(); ++n) {
+    if (!std::binary_search(grains_.begin(), grains_.end(), grains.id[n])) continue;
+    rows.push_back({grains.id[n], {1.0, 0.0, 0.0, 0.0}});
+    if (grains.is_member(n)) rows.back().orientation = of_clump.at(grains.clump[n]);
+  }
+  rows = exchange_rows(communicator_, rows, std::vector<int>(rows.size(), 0));
+  std::sort(rows.begin(), rows.end(), [](const Turned& a, const Turned& b) { return a.id < b.id; });
+  for (const Turned& row : rows)
+    orientations_.insert(orientations_.end(), row.orientation.begin(), row.orientation.end());
 }
 
 void Tracks::go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const {
@@ -62,6 +89,15 @@ Records Tracks::take_records() {
     records.rows.push_back(
         {name, unit, {"time", "id"}, {"x", "y", "z"}, {times, grains_.size(), 3}, std::move(since_[q])});
     since_[q].clear();
+  }
+  if (clumps_) {
+    records.rows.push_back({"orientation",
+                            "1",
+                            {"time", "id"},
+                            {"w", "x", "y", "z"},
+                            {times, grains_.size(), 4},
+                            std::move(orientations_)});
+    orientations_.clear();
   }
   return records;
 }
@@ -124,7 +160,7 @@ std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext
   std::sort(ids.begin(), ids.end());
   if (ids.empty())
     for (GlobalId id = 0; id < run.grains->count(); id += keys.one_in) ids.push_back(id);
-  return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every);
+  return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every, run.grains->any_clumps());
 }
 
 }  // namespace thalweg::analysis

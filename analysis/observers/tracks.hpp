@@ -2,7 +2,8 @@
 //
 // Positions continue across the faces of a periodic box: from one measurement to the next a grain has gone to the image
 // that lies nearest to where the mean of its two velocities would have taken it, which is right as long as its speed
-// changes by less than a box in an interval. A member of a clump is recorded as the sphere it is.
+// changes by less than a box in an interval. A member of a clump is recorded as the sphere it is, with the orientation
+// of the clump.
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
@@ -19,7 +20,7 @@ struct TracksKeys {
   static constexpr const char* section = "tracks";
   static constexpr const char* meaning = "positions, motion and forces of chosen grains at short intervals, in tracks/";
   static constexpr Needs needs = Needs::grains;
-  // All that is recorded passes through rank 0, which holds up to 100 measurements: 14.4 kB a grain.
+  // All that is recorded passes through rank 0, which holds up to 100 measurements: 14.4 kB a grain, 17.6 with clumps.
   static constexpr std::int64_t most_grains = 20'000;
   std::vector<GlobalId> grains;  // ids; empty: every one_in-th grain
   std::int64_t one_in = 1;
@@ -32,8 +33,8 @@ std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext
 
 class Tracks : public Observer {
 public:
-  // grains: ids, ascending, each once. every: s, between measurements.
-  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every);
+  // grains: ids, ascending, each once. every: s, between measurements. clumps: orientations are recorded.
+  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps = false);
 
   std::string name() const override { return "tracks"; }
   double every() const override { return every_; }
@@ -44,7 +45,9 @@ public:
   // tracked_grains, track_measurements (1).
   std::vector<Diagnostic> results() const override;
 
-  // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord.
+  // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord;
+  // with clumps orientation, [time, grain, component], the unit quaternion w, x, y, z that turns vectors from the frame
+  // of the principal axes into space, 1, 0, 0, 0 of spheres.
   bool has_records() const override { return true; }
   Records take_records() override;
 
@@ -52,16 +55,19 @@ public:
   bool load(ArchiveReader& archive) override;  // begins anew where the archive has other grains
 
 private:
+  void record_orientations(const Snapshot& snapshot);
   void go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const;
 
   MPI_Comm communicator_;
   std::vector<GlobalId> grains_;
   double every_;
+  bool clumps_;
   std::int64_t seen_step_ = -1, measurements_ = 0;
   double last_time_ = 0.0;                  // s
   std::vector<GrainRecord> last_;           // on rank 0, at the latest measurement
   std::vector<double> times_;               // s, since take_records(); on rank 0
   std::vector<std::vector<double>> since_;  // the same of each quantity
+  std::vector<double> orientations_;        // the same; empty without clumps
 };
 
 }  // namespace thalweg::analysis

@@ -8,15 +8,19 @@
 
 namespace thalweg::analysis {
 
-// A contact of a grain, as it feels it.
+// A contact of a grain, or of the member of a clump, as it feels it.
 struct Touch {
-  GlobalId partner;  // the other grain; -1 - w for wall w
-  Vec3 arm;          // m, from the grain's centre to the contact
-  Vec3 force;        // N, on the grain
-  double distance;   // m, from the grain's centre to the partner's; of a wall, to the wall
+  GlobalId partner;                 // the other grain; -1 - w for wall w
+  Vec3 arm;                         // m, from the centre of the sphere to the contact
+  Vec3 force;                       // N, on it
+  double distance;                  // m, from its centre to the partner's; of a wall, to the wall
+  GlobalId member = -1;             // id of the member of a clump; -1: it is none
+  Vec3 from_centre = Vec3::Zero();  // m, from the clump's centre to the member's
 
   bool loaded() const { return force.dot(arm) < 0.0; }  // it presses the grain
-  Vec3 partner_position(const Vec3& centre) const { return centre + arm * (distance / arm.norm()); }
+  bool is(const Touch& other) const { return partner == other.partner && member == other.member; }
+  Vec3 point() const { return from_centre + arm; }  // m, from the centre of the grain or clump to the contact
+  Vec3 partner_position(const Vec3& centre) const { return centre + from_centre + arm * (distance / arm.norm()); }
 };
 
 struct GrainSample {
@@ -31,8 +35,8 @@ using GrainRing = std::deque<GrainSample>;  // oldest first
 
 // States as rows for messages: touches lie one after the other, as many as their samples say.
 struct TouchRow {
-  GlobalId id, partner;          // of the grain, of what it touches
-  std::array<double, 7> values;  // arm, force, distance
+  GlobalId id, partner, member;   // of the grain or clump, of what it touches, of the member
+  std::array<double, 10> values;  // arm, force, distance, from_centre
 };
 struct SampleRow {
   GlobalId id;
@@ -42,11 +46,12 @@ struct SampleRow {
 };
 
 inline TouchRow row_of(GlobalId id, const Touch& t) {
-  return {id, t.partner, {t.arm.x(), t.arm.y(), t.arm.z(), t.force.x(), t.force.y(), t.force.z(), t.distance}};
+  const Vec3 &a = t.arm, &f = t.force, &c = t.from_centre;
+  return {id, t.partner, t.member, {a.x(), a.y(), a.z(), f.x(), f.y(), f.z(), t.distance, c.x(), c.y(), c.z()}};
 }
 inline Touch touch_of(const TouchRow& row) {
   const auto& v = row.values;
-  return {row.partner, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+  return {row.partner, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6], row.member, {v[7], v[8], v[9]}};
 }
 
 // Adds the rows of a grain's ring behind those there are.

@@ -13,9 +13,8 @@ std::vector<Touch> loaded_touches(const GrainSample& sample) {
   return loaded;
 }
 
-const Touch* touch_of(const std::vector<Touch>& touches, GlobalId partner) {
-  const auto found = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.partner == partner; });
-  return found == touches.end() ? nullptr : &*found;
+bool has(const std::vector<Touch>& touches, const Touch& wanted) {
+  return std::any_of(touches.begin(), touches.end(), [&](const Touch& touch) { return touch.is(wanted); });
 }
 
 // Contacts at the start that are still loaded in the latest sample in which two of them are.
@@ -24,7 +23,7 @@ std::vector<Touch> still_loaded(const GrainRing& ring, std::size_t start, const 
     const std::vector<Touch> now = loaded_touches(ring[n]);
     std::vector<Touch> left;
     for (const Touch& touch : at_start)
-      if (touch_of(now, touch.partner)) left.push_back(touch);
+      if (has(now, touch)) left.push_back(touch);
     if (left.size() >= 2) return left;
   }
   return at_start;
@@ -45,11 +44,11 @@ std::optional<Hinge> hinge_of(const GrainRing& ring, std::size_t onset, const Ve
   if (at_start.size() < 2) return std::nullopt;
   std::vector<Touch> touches = still_loaded(ring, start, at_start);
   std::stable_sort(touches.begin(), touches.end(),
-                   [](const Touch& a, const Touch& b) { return a.arm.x() > b.arm.x(); });
+                   [](const Touch& a, const Touch& b) { return a.point().x() > b.point().x(); });
   const Vec3 centre = ring[start][GrainRecord::position];
   Hinge hinge{{touches[0].partner, touches[1].partner},
-              {centre + touches[0].arm, centre + touches[1].arm},
-              touches[1].arm - touches[0].arm};
+              {centre + touches[0].point(), centre + touches[1].point()},
+              touches[1].point() - touches[0].point()};
   if (hinge.axis.isZero(0.0)) return std::nullopt;
   hinge.axis.normalize();
   if (hinge.axis.cross(centre - hinge.points[0]).dot(way) < 0.0) hinge.axis = -hinge.axis;

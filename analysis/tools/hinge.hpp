@@ -9,6 +9,8 @@
 //   T_C = e . C               the couple's part of it
 //   T_c = -e . (r x W)        critical: what the fluid must exceed against the submerged weight W
 //
+// A clump is one grain: its contacts are those of all its members, F, C and W act on the whole, about its centre.
+//
 // Zhang et al. found T_C / T_F of about a quarter.
 #pragma once
 

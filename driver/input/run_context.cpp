@@ -25,7 +25,9 @@ std::vector<analysis::PopulationContext> populations_of(const Case& c) {
         return motion.centre + motion.displacement(time);
       };
     const GlobalId end = first + grains.row_count();
-    populations.push_back({fmt::format("grains_{}", p), first, end, pivot, grains.held(), grains.clumps.count > 0});
+    const std::int64_t members = grains.shape ? static_cast<std::int64_t>(grains.shape->clump.size()) : 1;
+    populations.push_back(
+        {fmt::format("grains_{}", p), first, end, pivot, grains.held(), grains.clumps.count > 0, members});
     first = end;
   }
   return populations;

@@ -6,12 +6,15 @@ Called by ctest: clump_run_test.py THALWEG MPIEXEC [unittest arguments]
 import sys
 from pathlib import Path
 
+import h5py
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
 import program
+import thalweg
 from program import ProgramTest
 
 # Two unit spheres (in mm) whose centres are a radius apart: the lens they share is 5 pi/12, so together 27 pi/12 mm^3.
@@ -173,6 +176,40 @@ run: {until: 0.01}
         self.assertLess(abs(velocity[1]), 1e-6)
         self.assertNotEqual(velocity[0], 0.0)
         self.assertNotEqual(spin[1], 0.0)
+
+    ANALYSES = ("--set", "grains.0.placement={pattern: random, seed: 2}", "--set", "grains.0.orientation=null", "--set",
+                "grains.0.count=6", "--set", "output.checkpoint.every=0.01", "--set",
+                "analysis={grain_profiles: {every: 5.0e-4}, stress_balance: {every: 5.0e-4}, tracks: {every: 5.0e-4}, "
+                "entrainment: {every: 5.0e-4, displacement: 0.01, rest_time: 0}}")
+
+    def test_analyses_take_clumps_on_any_ranks_and_after_a_restart(self):
+        self.run_well("run", self.case, *self.ANALYSES, "--until", "0.02")
+        self.run_well("run", self.case, *self.ANALYSES, "--until", "0.02", "--out", "four", ranks=4)
+        self.run_well("run", self.case, *self.ANALYSES, "--until", "0.01", "--out", "parts", ranks=2)
+        self.run_well("run", self.case, *self.ANALYSES, "--restart", "parts", "--until", "0.02", "--out", "parts")
+        for other in ("four", "parts"):
+            self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
+        with h5py.File(self.folder / "run/profiles.h5") as profiles:
+            group = profiles["grain_profiles"]
+            self.assertEqual(group["long_axis_alignment"].attrs["units"], b"1")
+            self.assertEqual(group["long_axis_alignment"].dims[0][0].name, "/grain_profiles/z")
+            some = group["clump_fraction"][:] > 0.0
+            for name in ("long_axis_alignment", "short_axis_alignment"):   # of unit vectors the trace is 1
+                self.assertLess(abs(group[name][:][some, :3].sum(axis=1) - 1.0).max(), 1e-12)
+            self.assertLess(abs(profiles["stress_balance/solid_fraction"][:]).max(), 0.75)
+        # In its own frame a clump stays as it is.
+        tracks = thalweg.Run(self.folder / "run").tracks
+        apart = tracks["position"][:, 1] - tracks["position"][:, 0]
+        apart[:, :2] -= 0.02 * numpy.round(apart[:, :2] / 0.02)
+        q = tracks["orientation"][:, 0]
+        self.assertTrue((q == tracks["orientation"][:, 1]).all())
+        back = -q[:, 1:]
+        own = apart + 2.0 * numpy.cross(back, numpy.cross(back, apart) + q[:, :1] * apart)
+        self.assertLess(abs(own - own[0]).max(), 1e-12)
+        self.assertGreater(abs(apart - apart[0]).max(), 1e-6)   # it has turned
+        self.assertGreater(self.summary("run")["entrainment"]["watched_grains"], 0)
+        self.assert_refused("check", self.case, *self.ANALYSES, "--set", "analysis.entrainment.grains=[3]",
+                            words=("analysis.entrainment.grains", "clump 2"))
 
 
 if __name__ == "__main__":

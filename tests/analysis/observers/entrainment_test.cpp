@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace thalweg::analysis::entrainment_test {
 namespace {
@@ -20,18 +22,22 @@ constexpr GlobalId count = 60;
 // on top (ids 50 to 59, z = 1.4 m). Grain 50 + n leaves its place at 0.305 s + 0.1 n s with 2 m/s along x, for 0.15 s,
 // if n is even; it moves 0.3 m. Each has two loaded contacts at 0.4 m below its centre, one on either side, and the
 // fluid pushes it with 1 N along x and turns it with C_n = 0.1 (1 + n) N m about y: its share is C_n / (0.4 + C_n).
-// Whoever owns a grain changes from step to step.
+// Whoever owns a grain changes from step to step. With twins each grain on top is a clump of two spheres, 50 + 2n and
+// 51
+// + 2n, on either side of its centre, each with a contact and half of the load.
 class Bed : public ContactSource {
 public:
+  static constexpr double aside = 0.2;  // m, of a twin from the centre
+  explicit Bed(bool twins = false) : twins_(twins) {}
+
   static double couple(GlobalId n) { return 0.1 * static_cast<double>(1 + n); }
   static double share(GlobalId n) { return couple(n) / (lever + couple(n)); }
 
   void show(Entrainment& observer, std::int64_t step) {
     const double time = dt * static_cast<double>(step);
-    for (auto* list : {&position_, &velocity_, &spin_, &force_, &couple_, &contact_}) list->clear();
-    id_.clear();
-    radii_.clear();
-    masses_.clear();
+    const auto clear = [](auto&... lists) { (lists.clear(), ...); };
+    clear(id_, clump_, radii_, masses_, position_, velocity_, spin_, force_, couple_, contact_);
+    std::vector<ClumpState> clumps;
     for (GlobalId id = count - 1; id >= 0; --id) {
       if ((id * 7 + step) % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) continue;
       const GlobalId n = id - 50;
@@ -41,22 +47,29 @@ public:
                  n < 0 ? 0.5 + static_cast<double>(id / 10) : static_cast<double>(n) + 0.5, n < 0 ? 0.5 : 1.4);
       if (starts) place.x() += way;
       if (place.x() >= 20.0) place.x() -= 20.0;
-      id_.push_back(id);
-      radii_.push_back(radius);
-      masses_.push_back(1.0);
-      position_.push_back(place);
-      velocity_.push_back(moves ? Vec3(2.0, 0.0, 0.0) : Vec3(Vec3::Zero()));
-      spin_.push_back(Vec3::Zero());
-      force_.push_back(Vec3(1.0, 0.0, 0.0));
-      couple_.push_back(Vec3(0.0, couple(n), 0.0));
-      contact_.push_back(Vec3(0.0, 0.0, 2.0));
+      const Vec3 velocity = moves ? Vec3(2.0, 0.0, 0.0) : Vec3(Vec3::Zero());
+      if (!twins_ || n < 0) {
+        add(id, -1, place, velocity, 1.0, couple(n));
+        continue;
+      }
+      const GlobalId first = 50 + 2 * n;
+      for (const int twin : {0, 1})
+        add(first + twin, first, place + Vec3(0.0, twin == 0 ? -aside : aside, 0.0), velocity, 0.5, 0.5 * couple(n));
+      clumps.push_back({first, 1.0, 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3), place, velocity, 0.0});
     }
     Snapshot snapshot;
     snapshot.time = time;
     snapshot.step = step;
     snapshot.decomposition = &decomposition_;
     snapshot.contacts = this;
-    snapshot.grains.global_count = count;
+    snapshot.grains.global_count = twins_ ? count + 10 : count;
+    if (twins_) {
+      std::reverse(clumps.begin(), clumps.end());
+      snapshot.grains.clump_count = 10;
+      snapshot.grains.member_count = 20;
+      snapshot.grains.clump = clump_;
+      snapshot.grains.clumps = clumps;
+    }
     snapshot.grains.id = id_;
     snapshot.grains.radius = radii_;
     snapshot.grains.mass = masses_;
@@ -72,15 +85,33 @@ public:
   void for_each_contact(const ContactVisitor&) const override { FAIL() << "only watched grains are asked for"; }
   void for_each_contact_of(std::span<const char> chosen, const ContactEndVisitor& visit) const override {
     for (std::size_t i = 0; i < chosen.size(); ++i)
-      for (const double side : {-0.3, 0.3})
-        if (chosen[i] != 0) visit(i, {{0.0, side, -lever}, {0.0, 0.0, 1.0}, side < 0.0 ? 1 : 2, {0.0, 2 * side, -0.8}});
+      for (const double side : {-0.3, 0.3}) {
+        const bool member = clump_[i] >= 0, left = id_[i] == clump_[i];
+        if (chosen[i] == 0 || (member && left != (side < 0.0))) continue;
+        const double own = side - (member ? (left ? -aside : aside) : 0.0);
+        visit(i, {{0.0, own, -lever}, {0.0, 0.0, 1.0}, side < 0.0 ? 1 : 2, {0.0, 2 * own, -0.8}});
+      }
   }
 
   const Decomposition& decomposition() const { return decomposition_; }
 
 private:
+  void add(GlobalId id, GlobalId clump, const Vec3& place, const Vec3& velocity, double load, double couple) {
+    id_.push_back(id);
+    clump_.push_back(clump);
+    radii_.push_back(clump < 0 ? radius : 0.4);
+    masses_.push_back(1.0);
+    position_.push_back(place);
+    velocity_.push_back(velocity);
+    spin_.push_back(Vec3::Zero());
+    force_.push_back(Vec3(load, 0.0, 0.0));
+    couple_.push_back(Vec3(0.0, couple, 0.0));
+    contact_.push_back(Vec3(0.0, 0.0, 2.0 * load));
+  }
+
+  bool twins_;
   Decomposition decomposition_{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
-  std::vector<GlobalId> id_;
+  std::vector<GlobalId> id_, clump_;
   std::vector<double> radii_, masses_;
   std::vector<Vec3> position_, velocity_, spin_, force_, couple_, contact_;
 };
@@ -144,6 +175,38 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   EXPECT_EQ(array_of(second, "contact_point").shape[0], 22u);
 }
 
+EntrainmentSettings settings_of_twins() {
+  EntrainmentSettings s = settings({});
+  s.clumps = true;
+  s.held = {{54, 56}};
+  return s;
+}
+
+// Clumps with the place, load and contacts of the spheres above start as these do, about the same hinge.
+TEST(Entrainment, OfClumpsTakesTheWholeAndAllItsContacts) {
+  Bed bed, twins(true);
+  const PeriodicBox box = bed.decomposition().box();
+  Entrainment of_spheres(MPI_COMM_WORLD, box, settings({})), of_twins(MPI_COMM_WORLD, box, settings_of_twins());
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(of_spheres, step), twins.show(of_twins, step);
+  EXPECT_EQ(value_of(of_twins.diagnostics(), "watched_grains"), 9.0);
+  EXPECT_EQ(value_of(of_twins.diagnostics(), "entrainments"), 4.0);
+  EXPECT_NEAR(value_of(of_twins.results(), "couple_share_mean"), value_of(of_spheres.results(), "couple_share_mean"),
+              1e-14);
+  const Records spheres = of_spheres.take_records(), clumps = of_twins.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  ASSERT_EQ(clumps.events.size(), 4u);
+  const Event &sphere = spheres.events[1], &clump = clumps.events[1];
+  EXPECT_EQ(clump.numbers.at(0).values.at(0), 58);
+  for (const char* name : {"position", "fluid_force", "fluid_couple", "contact_force", "hinge_points", "hinge_axis",
+                           "fluid_torque", "couple_torque", "critical_torque"}) {
+    const std::vector<double>&expected = array_of(sphere, name).values, &found = array_of(clump, name).values;
+    ASSERT_EQ(found.size(), expected.size()) << name;
+    for (std::size_t v = 0; v < found.size(); ++v) EXPECT_NEAR(found[v], expected[v], 1e-12) << name;
+  }
+  EXPECT_EQ(array_of(clump, "contact_point").shape[0], 22u);
+  EXPECT_EQ(clump.numbers.back().name, "contact_member");
+}
+
 // Grain 58 starts at 1.105 s and goes on beyond the face of the box at 1.205 s; listed grains alone are watched.
 TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
   Bed bed;
@@ -159,11 +222,10 @@ TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
   EXPECT_NEAR(position[position.size() - 3], 20.01, 1e-12);  // 0.21 m from 19.8 m
 }
 
-TEST(Entrainment, GoesOnAfterARestartWithTheSameBits) {
-  Bed bed;
+void restart(Bed bed, const EntrainmentSettings& given) {
   const PeriodicBox box = bed.decomposition().box();
-  Entrainment straight(MPI_COMM_WORLD, box, settings({})), before(MPI_COMM_WORLD, box, settings({})),
-      after(MPI_COMM_WORLD, box, settings({}));
+  Entrainment straight(MPI_COMM_WORLD, box, given), before(MPI_COMM_WORLD, box, given),
+      after(MPI_COMM_WORLD, box, given);
   for (std::int64_t step = 0; step <= 150; ++step) bed.show(straight, step);
   for (std::int64_t step = 0; step <= 73; ++step) bed.show(before, step);
   test::MemoryArchive archive, of_after, of_straight;
@@ -183,7 +245,14 @@ TEST(Entrainment, GoesOnAfterARestartWithTheSameBits) {
     EXPECT_EQ(rest.events[e].name, whole.events[e + 1].name);
     for (std::size_t n = 0; n < rest.events[e].arrays.size(); ++n)
       EXPECT_EQ(rest.events[e].arrays[n].values, whole.events[e + 1].arrays[n].values);
+    for (std::size_t n = 0; n < rest.events[e].numbers.size(); ++n)
+      EXPECT_EQ(rest.events[e].numbers[n].values, whole.events[e + 1].numbers[n].values);
   }
+}
+
+TEST(Entrainment, GoesOnAfterARestartWithTheSameBits) {
+  restart(Bed(), settings({}));
+  restart(Bed(true), settings_of_twins());
 }
 
 }  // namespace

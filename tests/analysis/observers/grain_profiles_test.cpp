@@ -5,12 +5,15 @@
 #include "analysis/tools/sphere_in_layer.hpp"
 #include "core/state/contact_stress.hpp"
 #include "core/sums/reproducible_sum.hpp"
+#include "dem/clumps/clump_of_body.hpp"
 #include "dem/clumps/clump_seed.hpp"
 #include "tests/dem/grain_cases.hpp"
 #include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -107,6 +110,57 @@ TEST(GrainProfiles, AClumpIsItsUnionOnce) {
   EXPECT_NEAR(along / (0.2 * exact), 1.0, 1e-6);
   // F_z = m g at the foot, 3/2 R below the centre.
   EXPECT_NEAR(stress / (-weight * (1.5 * r - overlap)), 1.0, 1e-6);
+}
+
+// Spheres that stand for bodies with moments of 1, 2 and 2.5 about x, y and z: the long axis is x, the short one z. One
+// lies as it is given, one is turned by a about y; a grain without a shape does not count.
+TEST(GrainProfiles, OfClumpsHaveTheMeanOrientationOfTheirAxes) {
+  const Decomposition decomposition = box_of({16, 16, 16}, 1.5e-3, false);
+  const double r = dem::test::glass_radius, a = 0.7, volume = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  dem::BodyMoments body;
+  body.volume = volume;
+  body.inertia = volume * r * r / 5.0 * Vec3(1.0, 2.0, 2.5).asDiagonal();
+  dem::ClumpSeed lying;
+  lying.shape = std::make_shared<const dem::ClumpShape>(
+      dem::clump_shape(std::vector<dem::PlacedSphere>{{Vec3::Zero(), r}}, body));
+  lying.density = dem::test::glass_density;
+  lying.id = 1;
+  lying.position = Vec3(0.004, 0.004, 0.005);
+  dem::ClumpSeed turned = lying;
+  turned.id = 2;
+  turned.position = Vec3(0.018, 0.012, 0.005);
+  turned.orientation = {std::cos(0.5 * a), 0.0, std::sin(0.5 * a), 0.0};
+  dem::GrainSeed sphere;
+  sphere.radius = r;
+  sphere.density = dem::test::glass_density;
+  sphere.position = Vec3(0.004, 0.018, 0.005);
+  const GrainDynamics grains(decomposition, MPI_COMM_WORLD, plain(), {sphere}, {lying, turned});
+  GrainProfiles profiles(MPI_COMM_WORLD, decomposition, 1e-3, {}, 0.0, true);
+  profiles.observe(Shown(grains).snapshot());
+  const auto values = by_name(profiles);
+  const double s = std::sin(a), c = std::cos(a);
+  const std::array<double, 6> long_axes{0.5 + 0.5 * c * c, 0.0, 0.5 * s * s, 0.0, -0.5 * s * c, 0.0},
+      short_axes{0.5 * s * s, 0.0, 0.5 + 0.5 * c * c, 0.0, 0.5 * s * c, 0.0};
+  double clumps = 0.0, all = 0.0;
+  for (std::size_t n = 0; n < values.at("z").size(); ++n) {
+    clumps += values.at("clump_fraction")[n] * 0.024 * 0.024 * 1e-3;
+    all += values.at("solid_fraction")[n] * 0.024 * 0.024 * 1e-3;
+    const bool any = values.at("clump_fraction")[n] > 0.0;
+    for (std::size_t p = 0; p < 6; ++p) {
+      EXPECT_NEAR(values.at("long_axis_alignment")[6 * n + p], any ? long_axes[p] : 0.0, 1e-9) << n << ' ' << p;
+      EXPECT_NEAR(values.at("short_axis_alignment")[6 * n + p], any ? short_axes[p] : 0.0, 1e-9) << n << ' ' << p;
+    }
+  }
+  EXPECT_NEAR(clumps / (2.0 * volume), 1.0, 1e-9);
+  EXPECT_NEAR(all / (3.0 * volume), 1.0, 1e-9);
+
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, MPI_COMM_WORLD);
+  profiles.save(writer);
+  GrainProfiles after(MPI_COMM_WORLD, decomposition, 1e-3, {}, 0.0, true);
+  test::MemoryReader reader(archive);
+  EXPECT_TRUE(after.load(reader));
+  EXPECT_EQ(by_name(after), values);
 }
 
 // A disk in a box five times as wide as it is thick: layers are as wide as the disk.

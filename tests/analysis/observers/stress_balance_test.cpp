@@ -135,6 +135,41 @@ TEST(StressBalance, OfAHeldSphereInShearIsThatOfThePlates) {
   EXPECT_NEAR(values.at("driving_stress").front() - values.at("driving_stress").back(), -force / area, 1e-9 * unit);
 }
 
+// The same of a clump of two spheres, one above the other and askew. The stress of its parts, spread over its volume or
+// not, is the same in the whole, which it is only with arms from the centre of the clump: the fluid pushes the spheres
+// in opposite directions.
+TEST(StressBalance, OfAHeldClumpInShearIsThatOfThePlates) {
+  WaterBox box = viscous_box({20, 18, 24}, 9.0, 1.5);
+  const double height = 24.0 * box.spacing, rate = 0.02 * box.viscosity / (2.5e-3 * 2.5e-3);
+  box.plate_velocity = 0.5 * rate * height;
+  static double shear, middle;
+  shear = rate;
+  middle = 0.5 * height;
+  box.initial = [](const Vec3& p) { return FluidInitialState{0.0, Vec3(shear * (p.z() - middle), 0.0, 0.0)}; };
+  const std::vector<dem::PlacedSphere> pair{{{-0.6e-3, 0.0, -1.6e-3}, 2e-3}, {{0.6e-3, 0.0, 1.6e-3}, 2e-3}};
+  box.clumps = {coupling::glass_clump(0, pair, Vec3(9.2 * box.spacing, 8.1 * box.spacing, middle))};
+  box.clumps[0].motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  const double decay = 24.0 * 24.0 / (std::numbers::pi * std::numbers::pi / 3.0);
+  for (int step = 0; step < static_cast<int>(10.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, box.spacing, {{0, 2}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double unit = 1000.0 * box.viscosity * rate, area = 20.0 * 18.0 * box.spacing * box.spacing;
+  EXPECT_LT(largest_apart(values, "total_stress", "driving_stress"), 1e-4 * unit);
+  EXPECT_NEAR(integral(values, "sum_of_stresses") / integral(values, "total_stress"), 1.0, 0.02);
+  EXPECT_NEAR(integral(values, "solid_fraction") * area / box.clumps[0].shape->volume, 1.0, 1e-9);
+
+  const Snapshot snapshot = system->snapshot();
+  double torque = 0.0;
+  for (std::size_t n = 0; n < snapshot.grains.id.size(); ++n) {
+    const Vec3 arm = snapshot.grains.position[n] - snapshot.grains.clumps[0].position;
+    torque += (snapshot.grains.fluid_torque[n] + arm.cross(snapshot.grains.fluid_force[n])).y();
+  }
+  EXPECT_NEAR(integral(values, "rotation_stress"), torque / area, 1e-6 * unit * height);
+  EXPECT_GT(torque, 0.0);
+}
+
 // A bed at rest in a viscous fluid that flows down a slope it can bear: two sheets of free spheres, each in the hollows
 // of the one below, on a sheet that is held. Weight and contacts come in. The start is the parabola over the bed; what
 // is not steady yet decays by exp(-4), and was a quarter of the bed stress at most (a bed surface wrong by half a grain

@@ -1,6 +1,7 @@
 #include "analysis/observers/tracks.hpp"
 
 #include "core/parallel/decomposition.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
@@ -84,6 +85,36 @@ TEST(Tracks, GoOnWhereAGrainLeavesTheBox) {
     EXPECT_EQ(array_of(records, "fluid_couple").values[6 * row + 5], 2.0);
     EXPECT_EQ(array_of(records, "contact_force").values[6 * row + 3], -1.0);
   }
+}
+
+// Grains 1 and 2 are members of a clump, which the last rank owns; a sphere has no orientation but 1, 0, 0, 0.
+TEST(Tracks, OfMembersHaveTheOrientationOfTheirClump) {
+  const Decomposition decomposition{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
+  const bool here = rank_of(MPI_COMM_WORLD) == size_of(MPI_COMM_WORLD) - 1, first = rank_of(MPI_COMM_WORLD) == 0;
+  std::vector<GlobalId> id, clump;
+  if (here) id = {2, 1}, clump = {1, 1};
+  if (first) id.push_back(0), clump.push_back(-1);
+  const std::vector<Vec3> some(id.size(), Vec3(1.0, 2.0, 3.0));
+  Snapshot snapshot;
+  snapshot.decomposition = &decomposition;
+  snapshot.grains.global_count = 3;
+  snapshot.grains.id = id;
+  snapshot.grains.clump = clump;
+  snapshot.grains.clump_count = 1;
+  snapshot.grains.member_count = 2;
+  for (auto* vectors : {&snapshot.grains.position, &snapshot.grains.velocity, &snapshot.grains.angular_velocity})
+    *vectors = some;
+  if (here) {
+    snapshot.grains.clumps = {{1, 1.0, 1.0, Vec3::Zero(), Vec3::Zero(), 0.0}};
+    snapshot.grains.clumps[0].orientation = {0.6, 0.0, 0.8, 0.0};
+  }
+  Tracks tracks(MPI_COMM_WORLD, {0, 2}, 0.5, true);
+  tracks.observe(snapshot);
+  const Records records = tracks.take_records();
+  if (!first) return;
+  const Profile& orientation = array_of(records, "orientation");
+  EXPECT_EQ(orientation.shape, (std::vector<std::uint64_t>{1, 2, 4}));
+  EXPECT_EQ(orientation.values, (std::vector<double>{1.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.8, 0.0}));
 }
 
 TEST(Tracks, GoOnAfterARestartOnAnyRanks) {

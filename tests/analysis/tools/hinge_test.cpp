@@ -44,6 +44,28 @@ TEST(Hinge, TorquesAreThoseOfARigidBody) {
   EXPECT_NEAR(torques_about(*hinge, ring[2], Vec3(0.0, 0.0, -3.0), Vec3::Zero()).critical, (a - 0.1) * 3.0, 1e-14);
 }
 
+// A clump that touches one neighbour with two members rolls about the line through both contacts, wherever the members'
+// centres are; a contact goes on as that of the same member.
+TEST(Hinge, OfAClumpIsThroughTheContactsOfItsMembers) {
+  const auto by = [](GlobalId member, const Touch& touch, const Vec3& from_centre) {
+    return Touch{1, touch.arm - from_centre, touch.force, touch.distance, member, from_centre};
+  };
+  const Touch left = by(7, one, Vec3(0.1, 0.3, -0.2)), right = by(8, two, Vec3(0.1, -0.3, -0.2));
+  const GrainRing ring{sample(0.0, 0.0, {left, right, three}), sample(0.1, 1.0, {left, right}, Vec3(0.1, 0.0, 0.02))};
+  const auto hinge = hinge_of(ring, 0, Vec3(0.1, 0.0, 0.02));
+  ASSERT_TRUE(hinge);
+  EXPECT_EQ(hinge->partners, (std::array<GlobalId, 2>{1, 1}));
+  EXPECT_NEAR((hinge->axis - Vec3::UnitY()).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((hinge->points[0] - centre - one.arm).norm(), 0.0, 1e-15);
+  const HingeTorques torques = torques_about(*hinge, ring[0], Vec3(0.1, 0.0, -3.0), Vec3::Zero());
+  EXPECT_NEAR(torques.fluid, h * 2.0 + a * 0.5 + 0.6, 1e-14);
+  EXPECT_NEAR(torques.critical, a * 3.0 - h * 0.1, 1e-14);
+  // Where one member leaves, the hinge is that of the other two contacts.
+  const GrainRing sideways{sample(0.0, 0.0, {left, right, three}),
+                           sample(0.1, 1.0, {left, three}, Vec3(0.0, 0.1, 0.0))};
+  EXPECT_EQ(hinge_of(sideways, 0, Vec3(0.0, 0.1, 0.0))->partners, (std::array<GlobalId, 2>{1, 3}));
+}
+
 TEST(Hinge, IsWhereTheGrainStaysInTouch) {
   const Touch obstacle{9, {1.0, 0.0, 0.0}, {-5.0, 0.0, 0.0}, 2.0};
   // It leaves grain 2 and rolls sideways over 1 and 3, and then runs into grain 9, which was no contact of its rest.
