@@ -46,8 +46,8 @@ dem::Quaternion orientation_of(const Population& population, std::size_t grain);
 // The grains of a bed file one by one, each either one row or the members of one clump, which follow each other.
 std::vector<std::span<const BedGrain>> bodies_of(std::span<const BedGrain> rows);
 
-// The clump that these members make, or that of their body, as it lies and moves, with id 0. box: of the bed. thickness: m, of disks. Throws
-// InputError where they make none.
+// The clump that these members make, or that of their body, as it lies and moves, with id 0. box: of the bed.
+// thickness: m, of disks. Throws InputError where they make none.
 dem::ClumpSeed clump_from(std::span<const BedGrain> members, const PeriodicBox& box, double thickness);
 
 // Figures of `count` clumps of this shape and density (kg/m^3).

@@ -110,7 +110,8 @@ private:
   }
 
   bool twins_;
-  Decomposition decomposition_{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
+  static Decomposition whole_box() { return {{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}}; }
+  Decomposition decomposition_ = whole_box();
   std::vector<GlobalId> id_, clump_;
   std::vector<double> radii_, masses_;
   std::vector<Vec3> position_, velocity_, spin_, force_, couple_, contact_;
