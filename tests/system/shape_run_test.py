@@ -88,6 +88,24 @@ output: {checkpoint: {every: 0.01}}
         for other in ("again", "parts"):
             self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
 
+    def test_size_classes_and_supplies_take_clumps_by_their_size(self):
+        """Eight clumps of 3 and 4 mm and those that come in: a class has the share of its number times d^3."""
+        mixed = ("--set", "grains.0.shape={stl: triaxial.stl, spheres: 4}", "--set",
+                 "grains.0.diameter={sizes: [3.0e-3, 4.0e-3], fractions: [0.5, 0.5]}", "--set", "run.until=0.03", "--set",
+                 "supplies=[{population: 0, rate: 400, region: {lower: [0, 0, 0.045], upper: [0.024, 0.024, 0.055]}}]",
+                 "--set", "analysis={fractional_transport: {}}")
+        self.run_well("run", self.case, *mixed)
+        with h5py.File(self.last_checkpoint("run")) as saved:
+            mass = saved["grains/clump_mass"][:, 0]
+        sphere = DENSITY * numpy.pi / 6.0 * numpy.array([3.0e-3, 4.0e-3]) ** 3
+        fine, coarse = ((abs(mass / one - 1.0) < 1e-9).sum() for one in sphere)
+        self.assertEqual(fine + coarse, len(mass))
+        self.assertGreaterEqual(len(mass), 16)
+        share = self.summary("run")["fractional_transport"]["class_0_bed_share"]
+        self.assertAlmostEqual(share, 27.0 * fine / (27.0 * fine + 64.0 * coarse), delta=1e-9)
+        self.run_well("run", self.case, *mixed, "--out", "two", ranks=2)
+        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("two").read_bytes())
+
     def test_a_bed_keeps_mass_and_moments_of_the_surfaces(self):
         self.run_well("run", self.case, *self.SIZES)
         with h5py.File(self.folder / "run/bed.h5") as bed:

@@ -23,8 +23,8 @@ constexpr GlobalId count = 60;
 // if n is even; it moves 0.3 m. Each has two loaded contacts at 0.4 m below its centre, one on either side, and the
 // fluid pushes it with 1 N along x and turns it with C_n = 0.1 (1 + n) N m about y: its share is C_n / (0.4 + C_n).
 // Whoever owns a grain changes from step to step. With twins each grain on top is a clump of two spheres, 50 + 2n and
-// 51
-// + 2n, on either side of its centre, each with a contact and half of the load.
+// 51 + 2n, on either side of its centre, each with one of the contacts: the first has a quarter of the load, and the
+// other one a couple about z that makes up for it.
 class Bed : public ContactSource {
 public:
   static constexpr double aside = 0.2;  // m, of a twin from the centre
@@ -49,12 +49,15 @@ public:
       if (place.x() >= 20.0) place.x() -= 20.0;
       const Vec3 velocity = moves ? Vec3(2.0, 0.0, 0.0) : Vec3(Vec3::Zero());
       if (!twins_ || n < 0) {
-        add(id, -1, place, velocity, 1.0, couple(n));
+        add(id, -1, place, velocity, 1.0, Vec3(0.0, couple(n), 0.0));
         continue;
       }
       const GlobalId first = 50 + 2 * n;
-      for (const int twin : {0, 1})
-        add(first + twin, first, place + Vec3(0.0, twin == 0 ? -aside : aside, 0.0), velocity, 0.5, 0.5 * couple(n));
+      for (const int twin : {0, 1}) {
+        const double load = twin == 0 ? 0.25 : 0.75;
+        add(first + twin, first, place + Vec3(0.0, twin == 0 ? -aside : aside, 0.0), velocity, load,
+            Vec3(0.0, load * couple(n), twin == 0 ? 0.0 : 0.5 * aside));
+      }
       clumps.push_back({first, 1.0, 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3), place, velocity, 0.0});
     }
     Snapshot snapshot;
@@ -96,7 +99,7 @@ public:
   const Decomposition& decomposition() const { return decomposition_; }
 
 private:
-  void add(GlobalId id, GlobalId clump, const Vec3& place, const Vec3& velocity, double load, double couple) {
+  void add(GlobalId id, GlobalId clump, const Vec3& place, const Vec3& velocity, double load, const Vec3& couple) {
     id_.push_back(id);
     clump_.push_back(clump);
     radii_.push_back(clump < 0 ? radius : 0.4);
@@ -105,7 +108,7 @@ private:
     velocity_.push_back(velocity);
     spin_.push_back(Vec3::Zero());
     force_.push_back(Vec3(load, 0.0, 0.0));
-    couple_.push_back(Vec3(0.0, couple, 0.0));
+    couple_.push_back(couple);
     contact_.push_back(Vec3(0.0, 0.0, 2.0 * load));
   }
 
