@@ -13,10 +13,12 @@ namespace thalweg::dem {
 namespace {
 
 constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step, of all supplies, and that return
-constexpr double rounding = 1e-9;         // of a count or mass that is due
+constexpr double rounding = 1e-9;         // of a count or mass that is due, and of the box
 
 void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& what) {
-  const bool inside = (zone.lower.array() >= 0.0).all() && (zone.upper.array() <= box.size.array()).all() &&
+  // A whole number of cells of a third of a millimetre is not quite the length that was asked for.
+  const Vec3 limit = (1.0 + rounding) * box.size;
+  const bool inside = (zone.lower.array() >= 0.0).all() && (zone.upper.array() <= limit.array()).all() &&
                       (zone.lower.array() <= zone.upper.array()).all();
   if (!inside)
     throw InputError(

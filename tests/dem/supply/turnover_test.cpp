@@ -337,6 +337,13 @@ TEST(Turnover, AGrainThatCannotKeepItsHeightComesInAtRest) {
   }
 }
 
+// Sixteen cells of 2.5 mm are 40 mm, but for the rounding that 0.04 has as well.
+TEST(Turnover, ASinkMayReachTheEndOfTheBox) {
+  GrainParameters p = busy_box();
+  p.sinks[0].zone.upper.x() = std::nextafter(0.04, 1.0);
+  EXPECT_NO_THROW(GrainDynamics(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start()));
+}
+
 TEST(Turnover, ImpossibleSuppliesAreRefused) {
   const auto refused = [](const GrainParameters& p) {
     EXPECT_THROW(GrainDynamics(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, few_at_start()), InputError);
