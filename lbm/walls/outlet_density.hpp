@@ -8,7 +8,7 @@
 // c_s = 1/sqrt(3). Sound that falls on the face as a whole has dp = rho c_s du and leaves; a fixed pressure would throw
 // it back undamped (Engquist and Majda 1977). Flow that changes more slowly leaves at d_0, a steady one at d_0 exactly:
 // the face resists only what is fast, and never drives. Eddies do not change m, as what one half of them takes out the
-// other takes in. Where they let fluid in, it has the velocity of the cell: nothing is extrapolated.
+// other takes in.
 #pragma once
 
 #include "core/base/archive.hpp"
@@ -23,7 +23,8 @@ public:
   // asked_for: rho - 1. cells_across: of the box, along the normal of the face.
   OutletDensity(double asked_for, int cells_across);
 
-  double deviation() const;  // d_w of the coming exchange
+  double deviation() const;                           // d_w of the coming exchange
+  bool lets_out() const { return momentum_ >= 0.0; }  // true if the fluid leaves, on the whole
 
   // Takes the mean of rho u along the outward normal over the fluid cells at the face after a step.
   void update(double mean_momentum);

@@ -65,7 +65,8 @@ Real Walls<Real>::with_velocity(const Populations<Real>& populations, int o, std
 }
 
 template <typename Real>
-Real Walls<Real>::at_outlet(const Populations<Real>& populations, int o, std::ptrdiff_t cell, double deviation) const {
+Real Walls<Real>::at_outlet(const Populations<Real>& populations, const IncomingDirection& incoming,
+                            std::ptrdiff_t cell) const {
   Vec3 momentum = -half_force_;  // a collision leaves the whole force in it; the velocity takes half
   double density = 1.0;
   for (int i = 0; i < D3Q19::directions; ++i) {
@@ -73,7 +74,13 @@ Real Walls<Real>::at_outlet(const Populations<Real>& populations, int o, std::pt
     density += f;
     for (int a = 0; a < 3; ++a) momentum[a] += D3Q19::c[i][a] * f;
   }
-  return static_cast<Real>(equilibrium_deviation(o, deviation, momentum / density));
+  const OutletDensity& outlet = *outlets_[incoming.face];
+  Vec3 velocity = momentum / density;
+  const double inwards = std::max(0.0, (incoming.face % 2 == 0 ? 1.0 : -1.0) * velocity[incoming.axis]);
+  const bool backflow = inwards > 0.0 && outlet.lets_out();
+  if (backflow) velocity = Vec3::Zero();
+  const double lost = backflow ? 0.0 : 1.5 * inwards * inwards;  // of the density: that of rho w^2/2
+  return static_cast<Real>(equilibrium_deviation(incoming.direction, outlet.deviation() - lost, velocity));
 }
 
 // Applies a reflection in loops over plain arrays.
@@ -133,8 +140,7 @@ template <typename Real>
 Real Walls<Real>::from_edge(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell, int other) const {
   const FaceCondition& wall = faces_[incoming.face];
-  if (wall.type == FaceType::pressure_outlet)
-    return at_outlet(populations, incoming.direction, cell, outlets_[incoming.face]->deviation());
+  if (wall.type == FaceType::pressure_outlet) return at_outlet(populations, incoming, cell);
   Vec3 velocity = Vec3::Zero();
   for (const int face : {std::min(incoming.face, other), std::max(incoming.face, other)})
     if (traits_of(faces_[face].type).has_velocity) velocity += faces_[face].velocity;
@@ -146,9 +152,8 @@ template <typename Real>
 Real Walls<Real>::from_wall(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell) const {
   const FaceCondition& wall = faces_[incoming.face];
-  return traits_of(wall.type).has_velocity
-             ? with_velocity(populations, incoming.direction, cell, wall.velocity)
-             : at_outlet(populations, incoming.direction, cell, outlets_[incoming.face]->deviation());
+  return traits_of(wall.type).has_velocity ? with_velocity(populations, incoming.direction, cell, wall.velocity)
+                                           : at_outlet(populations, incoming, cell);
 }
 
 // A row is one reflection, except where it meets other faces: at its ends, or along its whole length.

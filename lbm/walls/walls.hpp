@@ -12,6 +12,10 @@
 //   outlet             f_o(x, t+1) = f_o^eq(rho_w, u),   u of the cell, rho_w of outlet_density.hpp
 //                      What enters has no part out of equilibrium: at small viscosities a rule that keeps or reverses
 //                      that part (anti-bounce-back, extrapolation) amplifies it, and breaks down as eddies leave.
+//                      Where an eddy brings fluid in, u = 0: it comes from rest. With the velocity of the cell it would
+//                      bring more energy the faster it is, and backflow that lasts would grow without limit. Where the
+//                      whole face lets fluid in, it enters with the velocity of the cell and rho_w - 3 u^2/2
+//                      (Bernoulli).
 //
 // Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share in
 // shear, g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
@@ -150,7 +154,7 @@ private:
   double bounced_fraction(int face, double shear_rate) const;
   Real with_velocity(const Populations<Real>& populations, int direction, std::ptrdiff_t cell,
                      const Vec3& velocity) const;
-  Real at_outlet(const Populations<Real>& populations, int direction, std::ptrdiff_t cell, double deviation) const;
+  Real at_outlet(const Populations<Real>& populations, const IncomingDirection& incoming, std::ptrdiff_t cell) const;
 
   CellIndexing indexing_;
   FaceConditions faces_;
