@@ -85,7 +85,12 @@ function(thalweg_extended_copy module)
   file(GLOB_RECURSE originals CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${module}/*.hpp ${PROJECT_SOURCE_DIR}/${module}/*.cpp)
   set(copy ${CMAKE_CURRENT_BINARY_DIR}/copy)
   list(TRANSFORM copies PREPEND ${copy}/${module}/)
+  # Named, so that what includes them is compiled again in the same build.
+  set(headers ${originals})
+  list(FILTER headers INCLUDE REGEX "\\.hpp$")
+  list(TRANSFORM headers REPLACE "^${PROJECT_SOURCE_DIR}/" "${copy}/")
   add_custom_command(OUTPUT ${copies}
+                     BYPRODUCTS ${headers}
                      COMMAND ${THALWEG_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/extend.py ${PROJECT_SOURCE_DIR} ${copy}
                      DEPENDS extend.py ${PROJECT_SOURCE_DIR}/tests/support/extended_copy.py ${T_DEPENDS} ${originals})
   set(library thalweg_${module}_extended)

@@ -1,7 +1,5 @@
 #include "core/parallel/mpi_session.hpp"
 
-#include <cstdlib>
-
 #if defined(__SSE2__)
 #include <pmmintrin.h>
 #include <xmmintrin.h>
@@ -9,12 +7,7 @@
 
 namespace thalweg {
 
-// Open MPI opens every file with a shared pointer, which nothing here uses, and by default guards it with a semaphore in
-// /dev/shm that has the name of the file without its folder. A run that is killed meanwhile leaves the semaphore taken,
-// and every later run of the node then waits for ever at the file of that name. With the other kinds of shared pointers,
-// lock files beside the file, nothing waits.
 MpiSession::MpiSession(int& argc, char**& argv) {
-  setenv("OMPI_MCA_sharedfp", "^sm", 0);  // unless the user has chosen
   MPI_Init(&argc, &argv);
   flush_denormals_to_zero();
 }

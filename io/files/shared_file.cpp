@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <semaphore.h>
+
 #include <algorithm>
 
 namespace thalweg::io {
@@ -66,6 +68,13 @@ struct Layout {
 
 }  // namespace
 
+void forget_semaphore_of([[maybe_unused]] MPI_Comm communicator, [[maybe_unused]] const std::filesystem::path& file) {
+#ifdef OPEN_MPI
+  sem_unlink(("OMPIO_" + file.filename().string()).c_str());
+  MPI_Barrier(communicator);
+#endif
+}
+
 SharedFile::SharedFile(MPI_Comm communicator, const std::filesystem::path& path, std::uint64_t bytes)
     : communicator_(communicator), path_(path), partial_(path) {
   partial_ += ".partial";
@@ -78,6 +87,7 @@ SharedFile::SharedFile(MPI_Comm communicator, const std::filesystem::path& path,
     made = create_file(partial_) && reserve_on_disk(partial_, 0, bytes);
   }
   agree(made);
+  forget_semaphore_of(communicator_, partial_);
   good_ = MPI_File_open(communicator_, partial_.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file_) == MPI_SUCCESS;
   agree(good_);
 }

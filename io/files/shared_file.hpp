@@ -11,6 +11,11 @@
 
 namespace thalweg::io {
 
+// Before every opening of a file through MPI: Open MPI guards it by a semaphore that has the file's name and belongs to
+// the node. A process that is killed at that moment leaves it taken, and everyone who opens a file of this name on this
+// node would wait for ever. Collective.
+void forget_semaphore_of(MPI_Comm communicator, const std::filesystem::path& file);
+
 // Writes to `path` + ".partial" and gives the file its name in close(), so that a reader never opens half a file. All
 // calls are collective, and so are the errors: the constructor and close() throw RunError on every rank if anything has
 // failed on one of them, and no file is left. A file abandoned without close(), because a rank has failed elsewhere,

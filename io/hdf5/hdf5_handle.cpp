@@ -1,27 +1,13 @@
 #include "io/hdf5/hdf5_handle.hpp"
 
-#include <semaphore.h>
+#include "io/files/shared_file.hpp"
 
 #include <algorithm>
 
 namespace thalweg::io {
 
-namespace {
-
-// Open MPI guards the opening of a file by a semaphore that has the file's name and belongs to the node. A process that
-// is killed at that moment leaves it taken, and everyone who opens a file of this name on this node would wait for
-// ever.
-void forget_semaphore([[maybe_unused]] MPI_Comm communicator, [[maybe_unused]] const std::filesystem::path& file) {
-#ifdef OPEN_MPI
-  sem_unlink(("OMPIO_" + file.filename().string()).c_str());
-  MPI_Barrier(communicator);
-#endif
-}
-
-}  // namespace
-
 Handle mpi_access(MPI_Comm communicator, const std::filesystem::path& file) {
-  forget_semaphore(communicator, file);
+  forget_semaphore_of(communicator, file);
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL);
   return access;
