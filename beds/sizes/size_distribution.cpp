@@ -59,6 +59,7 @@ static void describe(SectionVisitor& visit, SieveKeys& sieve) {
   if (!visit.reading()) return;
   visit.require(sieve.sizes.size() >= 2 && rise(sieve.sizes), "sizes",
                 "give at least two sieves in m, each at least 0.1 % wider than the one before");
+  if (sieve.sizes.empty() || sieve.finer.empty()) return;  // missing, which is said when all is read
   visit.require(sieve.sizes.back() <= widest_sizes * sieve.sizes.front(), "sizes",
                 fmt::format("the widest sieve can be {:g} times the finest; leave out the finest", widest_sizes));
   visit.require(sieve.finer.size() == sieve.sizes.size(), "finer", "give as many shares of the mass as sieves");

@@ -34,9 +34,9 @@ struct Channel {
   double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
   // The laminar flow; without any wall, that of a film.
   LaminarChannel laminar(double acceleration) const {
-    const bool held = std::isfinite(reach) || std::isfinite(half_width);
-    return laminar_channel(acceleration, held ? reach : depth, half_width, viscosity);
+    return laminar_channel(acceleration, is_held() ? reach : depth, half_width, viscosity);
   }
+  bool is_held() const { return std::isfinite(reach) || std::isfinite(half_width); }
 };
 
 Channel channel_of(const Case& c) {
@@ -157,24 +157,47 @@ FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
   return flow;
 }
 
-FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
+// Of a discharge with this mean velocity (m/s) over the depth, without the time that it takes.
+FlowEstimate flow_of_discharge(double mean, FlowCause drive, const Channel& channel) {
   FlowEstimate flow;
-  if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return flow;
+  flow.cause = flow.drive = drive;
+  flow.bulk_velocity = mean;
+  flow.laminar = mean * channel.radius / channel.viscosity < channel_transition;
+  if (flow.laminar) {
+    const LaminarChannel of_unit = channel.laminar(1.0);
+    flow.friction_velocity = std::sqrt(mean / of_unit.mean * channel.radius);
+    flow.speed = mean * of_unit.largest / of_unit.mean;
+    return flow;
+  }
+  flow.friction_velocity = friction_velocity_of(mean, [&](double friction_velocity) {
+    return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
+  });
+  flow.speed = mean + flow.friction_velocity / karman_constant;
+  return flow;
+}
+
+// s, in which a profile follows its discharge.
+double time_to_adapt(const FlowEstimate& flow, const Channel& channel) {
+  return flow.laminar ? channel.laminar(1.0).spin_up : turnovers_to_adapt * channel.depth / flow.friction_velocity;
+}
+
+FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
+  if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return {};
   const Vec3 size = c.domain.size;
   const double water = size.x() * size.y() * size.z() - solid_volume(c);
   const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
-  flow.cause = flow.drive = FlowCause::mean_velocity;
-  flow.bulk_velocity = mean;
-  flow.laminar = mean * channel.radius / channel.viscosity < channel_transition;
-  const LaminarChannel of_unit = channel.laminar(1.0);
-  flow.friction_velocity = flow.laminar
-                               ? std::sqrt(mean / of_unit.mean * channel.radius)
-                               : friction_velocity_of(mean, [&](double friction_velocity) {
-                                   return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
-                                 });
-  flow.speed = flow.laminar ? mean * of_unit.largest / of_unit.mean : mean + flow.friction_velocity / karman_constant;
-  flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time +
-                 (flow.laminar ? of_unit.spin_up : turnovers_to_adapt * channel.depth / flow.friction_velocity);
+  FlowEstimate flow = flow_of_discharge(mean, FlowCause::mean_velocity, channel);
+  flow.spin_up = response_times_to_settle * c.fluid.mean_velocity->response_time + time_to_adapt(flow, channel);
+  return flow;
+}
+
+// Of an inlet upstream. A flow that nothing holds back keeps the profile of its inlet and has no friction velocity.
+FlowEstimate flow_of_inlet(const Case& c, const Channel& channel) {
+  const coupling::FaceKeys& inlet = c.domain.faces[x_low];
+  if (inlet.type != lbm::FaceType::velocity_inlet || !(inlet.velocity.x() > 0.0) || !channel.is_held()) return {};
+  const double mean = inlet.velocity.x() * c.domain.size.z() / channel.depth;
+  FlowEstimate flow = flow_of_discharge(mean, FlowCause::inlet, channel);
+  flow.spin_up = inlet.recycling_plane ? time_to_adapt(flow, channel) : c.domain.size.x() / mean;
   return flow;
 }
 
@@ -293,7 +316,7 @@ FlowEstimate flow_estimate(const Case& c) {
   const Channel channel = channel_of(c);
   if (channel.depth > 0.0 && c.domain.faces[bottom].type != lbm::FaceType::periodic) {
     const FlowEstimate drives[] = {flow_of_slope(c, channel), flow_of_mean_velocity(c, channel),
-                                   flow_of_moving_top(c, channel)};
+                                   flow_of_moving_top(c, channel), flow_of_inlet(c, channel)};
     flow = *std::max_element(std::begin(drives), std::end(drives), [](const FlowEstimate& a, const FlowEstimate& b) {
       return a.friction_velocity < b.friction_velocity;
     });

@@ -11,6 +11,7 @@
 //   mean velocity   the water above the bed carries it all: U = mean velocity times water/(A H);
 //                   laminar: u_tau and u_max of the same channel
 //                   turbulent: U = (u_tau/kappa) [ln(h/z_0) - 1], u_max = U + u_tau/kappa
+//   inlet upstream  the same with U = V times the height of the box over H
 //   moving top      u_max = V, U = V/2; laminar (V H/nu < 1440): u_tau^2 = nu V/H
 //                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
 //
@@ -20,7 +21,8 @@
 // Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
 // U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, that of the channel, and
 // 0.3 H^2/nu under a moving top; a held mean velocity 9.5 response times, then ten H/u_tau until the profile has
-// followed.
+// followed; behind an inlet that recycles the flow ten H/u_tau (laminar: the slowest mode), behind another one the time
+// in which the water passes the box.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -54,8 +56,8 @@ struct FlowEstimate {
   double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
   FlowCause cause = FlowCause::none;  // of that speed
 
-  // Flow along the bed or a bare floor: of the drives slope, mean velocity and moving top, the one with the largest
-  // friction velocity. Undefined without one.
+  // Flow along the bed or a bare floor: of the drives slope, mean velocity, moving top and inlet, the one with the
+  // largest friction velocity. Undefined without one.
   FlowCause drive = FlowCause::none;
   double depth = 0.0;              // m
   double bulk_velocity = 0.0;      // m/s, mean over the depth

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -124,6 +125,21 @@ std::size_t SolidCells::index(const Index3& cell) const {
   return static_cast<std::size_t>(cell[0]) +
          static_cast<std::size_t>(size_[0]) * (static_cast<std::size_t>(cell[1]) +
                                                static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(cell[2]));
+}
+
+double SolidCells::lowest_opening(const Vec3& lower, const Vec3& upper) const {
+  constexpr double rounding = 1e-9;  // cells
+  Index3 first, last;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(axis);
+    first[n] = std::max(0, static_cast<int>(std::floor(lower[axis] / step_[axis] + rounding)));
+    last[n] = std::min(size_[n], static_cast<int>(std::ceil(upper[axis] / step_[axis] - rounding))) - 1;
+  }
+  for (int k = first[2]; k <= last[2]; ++k)
+    for (int j = first[1]; j <= last[1]; ++j)
+      for (int i = first[0]; i <= last[0]; ++i)
+        if (!covered({i, j, k})) return std::max(lower.z(), k * step_.z());
+  return std::numeric_limits<double>::infinity();
 }
 
 int SolidCells::most_open_plane() const {

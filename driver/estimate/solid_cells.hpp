@@ -20,6 +20,10 @@ public:
   bool covered(const Index3& cell) const { return covered_[index(cell)]; }
   double height(int k) const { return (k + 0.5) * step_.z(); }  // m, of a layer
 
+  // Height (m) of the lowest point between these corners (m) that lies in no solid, down to a layer of cells; infinite
+  // where there is none.
+  double lowest_opening(const Vec3& lower, const Vec3& upper) const;
+
   // True if some way through the cells that are not covered and lie above this height (m) leads along x from one end
   // of the box to the other.
   bool opens_along_x(double height) const;

@@ -18,6 +18,7 @@
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/solid_cells.hpp"
 #include "driver/estimate/supplied_grains.hpp"
 #include "driver/plan/case_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
@@ -195,12 +196,16 @@ void add_turnover(const Case& c, Lines& lines) {
   }
   if (c.grains.empty() || periodic_axes(c.domain)[2]) return;
   const double surface = settled_height(c);
-  for (std::size_t n = 0; n < c.sinks.size(); ++n)
-    if (const double low = c.sinks[n].region.lower.z(); low < surface)
+  const SolidCells solids(c);
+  for (std::size_t n = 0; n < c.sinks.size(); ++n) {
+    const auto& [lower, upper] = c.sinks[n].region;
+    const double low = solids.lowest_opening(lower, upper);
+    if (low < surface)
       lines.push_back(
           fmt::format("sink {:<5} reaches {:.3g} m below the surface of the settled bed, about {:.3g} m high, "
                       "and drains it",
                       n, surface - low, surface));
+  }
 }
 
 void add_model_fluid(const Case& c, Lines& lines) {

@@ -63,7 +63,7 @@ void add_slope(const FlowNumbers& flow, Lines& lines) {
                               flow.particle_reynolds, flow.friction_velocity));
 }
 
-// Reports a flow driven by a mean velocity or a moving top.
+// Reports a flow driven by a mean velocity, a moving top or an inlet.
 void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
   const ReferenceGrain grain = reference_grain(c);
   const double g = gravity_vector(c.gravity).norm(), excess = grain.density / c.fluid.density - 1.0;

@@ -52,7 +52,8 @@ bool starts_developed(const Case& c) {
 
 // The log law that a turbulent flow under a free surface comes to.
 std::vector<Advice> developed_start(const Case& c, const FlowEstimate& flow) {
-  const bool suits = flow.drive == FlowCause::slope || flow.drive == FlowCause::mean_velocity;
+  const bool suits =
+      flow.drive == FlowCause::slope || flow.drive == FlowCause::mean_velocity || flow.drive == FlowCause::inlet;
   if (!suits || flow.laminar || c.domain.faces[top].drags() || c.initial.fluid.count() > 0) return {};
   const Change start = word_change("initial.fluid.log_profile", "{}", [](Case& other) {
     other.initial.fluid.log_profile.emplace();
@@ -110,6 +111,25 @@ Warnings early_averages(const Case& c) {
        "later ones and a longer run"}};
 }
 
+// Water at rest that an inlet sets going in the first step is a water hammer.
+Warnings sudden_inlet(const Case& c) {
+  const coupling::FaceKeys& inlet = c.domain.faces[x_low];
+  const bool has_free_grains =
+      std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return !grains.held(); });
+  const bool at_rest = c.initial.fluid.count() == 0 && !c.initial.takes(InitialField::fluid);
+  if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains) return {};
+  std::vector<Advice> advice = developed_start(c, flow_estimate(c));
+  const Vec3 v = inlet.velocity;
+  const Change uniform = word_change("initial.fluid.uniform", fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()),
+                                     [v](Case& other) { other.initial.fluid.uniform = v; });
+  if (advice.empty()) advice.push_back({{uniform}, {}});
+  return {
+      {fmt::format("The fluid starts at rest and the inlet sets it going at {:.3g} m/s within a step, an impact that "
+                   "throws the grains about",
+                   v.norm()),
+       advice, "a start with the velocity of the inlet"}};
+}
+
 // s, in which the highest grains of a population reach the bed.
 double settling_time(const Case& c, const beds::Population& grains) {
   const double highest = grains.placement.region ? grains.placement.region->upper.z() : c.domain.size.z();
@@ -157,7 +177,7 @@ Warnings other_start(const Case& c) {
 }  // namespace
 
 std::vector<WarningRule> plan_rules() {
-  return {short_run, early_averages, unsettled_grains, other_start, long_ramp, frequent_output};
+  return {short_run, early_averages, sudden_inlet, unsettled_grains, other_start, long_ramp, frequent_output};
 }
 
 }  // namespace thalweg::driver

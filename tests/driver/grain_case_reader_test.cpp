@@ -208,6 +208,16 @@ TEST(GrainCaseReader, SizesByMassThatCannotBe) {
     EXPECT_NE(refused(sizes).find(words), std::string::npos) << refused(sizes);
 }
 
+// A key that is missing is reported when the section is read, and until then nothing is computed with it.
+TEST(GrainCaseReader, SizesOfWhichAKeyIsMissing) {
+  const auto refused = [](const std::string& sieve) {
+    return message_of<InputError>([&] { read(flume, {"grains.0.diameter={sieve: " + sieve + "}"}); });
+  };
+  for (const std::string sieve : {"{sizes: [4e-3, 5e-3]}", "{sizes: [4e-3, 5e-3], fner: [0, 1]}"})
+    EXPECT_NE(refused(sieve).find("finer"), std::string::npos) << sieve;
+  EXPECT_NE(refused("{finer: [0, 1]}").find("sieve.sizes is missing"), std::string::npos);
+}
+
 // The fixed population of 4 mm is no sediment and makes no class.
 TEST(GrainCaseReader, SizeClassesAreTheSievesOfFreeGrains) {
   const std::string sizes = "{sieve: {sizes: [4.2e-3, 5e-3, 6e-3], finer: [0, 0.5, 1]}}";

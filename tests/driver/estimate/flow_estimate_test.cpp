@@ -198,7 +198,47 @@ TEST(FlowEstimate, KnowsInletsStartsAndGrainsThatFall) {
   c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.3, 0.0, 0.0)};
   c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
   EXPECT_EQ(flow_estimate(c).cause, FlowCause::inlet);
-  EXPECT_NEAR(flow_estimate(c).speed, 0.3 * c.domain.size.z() / depth, 1e-12);  // all of it above the bed
+  // All of it above the bed, with the profile that it may come to.
+  EXPECT_NEAR(flow_estimate(c).speed, 0.3 * c.domain.size.z() / depth + flow_estimate(c).friction_velocity / 0.41,
+              1e-12);
+}
+
+// What enters over the whole face flows above the bed, and so has the friction velocity of the log law of its mean.
+TEST(FlowEstimate, OfAnInletOverABedIsThatOfItsDischarge) {
+  Case c = wide_bed(0.0);
+  c.grains[0].fixed = true;
+  c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.2, 0.0, 0.0)};
+  c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  const FlowEstimate passing = flow_estimate(c);
+  EXPECT_EQ(passing.drive, FlowCause::inlet);
+  const double mean = 0.2 * c.domain.size.z() / depth;
+  EXPECT_NEAR(passing.bulk_velocity, mean, 1e-12);
+  EXPECT_NEAR(mean, passing.friction_velocity / 0.41 * (std::log(depth / (d / 15.0)) - 1.0), 1e-9);
+  EXPECT_NEAR(passing.spin_up, c.domain.size.x() / mean, 1e-12);
+  c.domain.faces[x_low].recycling_plane = 0.5 * c.domain.size.x();  // the flow develops, as in a periodic box
+  EXPECT_NEAR(flow_estimate(c).spin_up, 10.0 * depth / passing.friction_velocity, 1e-9);
+}
+
+TEST(Warnings, OfWaterAtRestThatAnInletSetsGoing) {
+  Case c = wide_bed(0.0);
+  c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.2, 0.0, 0.0)};
+  c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  EXPECT_TRUE(any_contains(warnings(c), "starts at rest and the inlet sets it going at 0.2 m/s"));
+  c.initial.fluid.uniform = Vec3(0.2, 0.0, 0.0);
+  EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
+  c.initial.fluid.uniform.reset();
+  c.grains[0].fixed = true;  // nothing to throw about
+  EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
+}
+
+TEST(FlowEstimate, OfAStreamThatNothingHoldsBackHasNoFriction) {
+  Case c = wide_bed(0.0);
+  c.grains.clear();
+  c.domain.faces[bottom].type = c.domain.faces[top].type = lbm::FaceType::free_slip;
+  c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.2, 0.0, 0.0)};
+  c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  EXPECT_EQ(flow_estimate(c).drive, FlowCause::none);
+  EXPECT_EQ(flow_estimate(c).speed, 0.2);
 }
 
 TEST(Warnings, OfLaminarFlowWithSmagorinskysModel) {
