@@ -6,14 +6,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace thalweg::lbm {
 
 namespace {
 
 constexpr int message_tag = 61;
-constexpr double largest_scale = 2.0;
+constexpr double from_body = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -35,6 +36,7 @@ RecycledInflow<Real>::RecycledInflow(const Decomposition& decomposition, int ran
     if (D3Q19::c[o][axis_] == inward_) directions_.at(static_cast<std::size_t>(found++)) = o;
 
   const Index3 here = decomposition.coordinates_of(rank);
+  recycled_.resize(static_cast<std::size_t>(nu_) * static_cast<std::size_t>(nv_));
   const auto in_slab = [&](int slab) {
     Index3 at = here;
     at[axis_] = slab;
@@ -68,65 +70,60 @@ void RecycledInflow<Real>::for_cells(int layer, const Action& action) const {
 }
 
 template <typename Real>
-std::vector<typename RecycledInflow<Real>::Differences> RecycledInflow<Real>::differences_in_plane(
-    const Populations<Real>& populations, const CellMap& cells) const {
-  std::vector<Differences> differences(static_cast<std::size_t>(nu_) * nv_, Differences{});
+void RecycledInflow<Real>::take_from_plane(const Populations<Real>& populations, const CellMap& cells) {
   for_cells(plane_, [&](std::size_t n, const Index3& at) {
     const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
+    recycled_[n].fill(from_body);
     if (!cells.is_fluid(cell)) return;
     for (int k = 0; k < entering; ++k) {
       const int o = directions_[static_cast<std::size_t>(k)], back = D3Q19::opposite(o);
-      const bool from_body =
-          !cells.is_fluid(cell + indexing_.offset(back)) &&
-          !cells.is_beyond_wall({at[0] + D3Q19::c[back][0], at[1] + D3Q19::c[back][1], at[2] + D3Q19::c[back][2]});
-      if (from_body) continue;
-      differences[n][static_cast<std::size_t>(k)] = static_cast<double>(populations.incoming(o, cell)) -
-                                                    static_cast<double>(populations.post_collision(back, cell));
+      const Index3 before{at[0] + D3Q19::c[back][0], at[1] + D3Q19::c[back][1], at[2] + D3Q19::c[back][2]};
+      if (cells.is_fluid(cell + indexing_.offset(back)) || cells.is_beyond_wall(before))
+        recycled_[n][static_cast<std::size_t>(k)] = static_cast<double>(populations.incoming(o, cell));
     }
   });
-  return differences;
 }
 
 // Moves them from the ranks of the plane to those of the inlet.
 template <typename Real>
-std::vector<typename RecycledInflow<Real>::Differences> RecycledInflow<Real>::differences_at_inlet(
-    std::vector<Differences> in_plane, MPI_Comm communicator) const {
-  if (plane_ >= 0 && inlet_ >= 0) return in_plane;
+void RecycledInflow<Real>::send_to_inlet(MPI_Comm communicator) {
+  if (plane_ >= 0 && inlet_ >= 0) return;
   const int count = entering * nu_ * nv_;
-  if (plane_ >= 0) MPI_Send(in_plane.data(), count, MPI_DOUBLE, inlet_rank_, message_tag, communicator);
-  if (inlet_ < 0) return {};
-  std::vector<Differences> differences(static_cast<std::size_t>(nu_) * nv_);
-  MPI_Recv(differences.data(), count, MPI_DOUBLE, plane_rank_, message_tag, communicator, MPI_STATUS_IGNORE);
-  return differences;
+  if (plane_ >= 0) MPI_Send(recycled_.data(), count, MPI_DOUBLE, inlet_rank_, message_tag, communicator);
+  if (inlet_ >= 0)
+    MPI_Recv(recycled_.data(), count, MPI_DOUBLE, plane_rank_, message_tag, communicator, MPI_STATUS_IGNORE);
 }
 
 template <typename Real>
-void RecycledInflow<Real>::apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator) const {
-  std::vector<Differences> differences;
-  if (plane_ >= 0) differences = differences_in_plane(populations, cells);
-  differences = differences_at_inlet(std::move(differences), communicator);
+void RecycledInflow<Real>::apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator) {
+  if (plane_ >= 0) take_from_plane(populations, cells);
+  send_to_inlet(communicator);
 
   // Sums of integers, so that they do not depend on the ranks.
-  std::array<std::int64_t, 2> sums{};  // of M_d, and N
+  std::array<std::int64_t, 2> sums{};  // of the mass that the populations bring, and N
   if (inlet_ >= 0)
     for_cells(inlet_, [&](std::size_t n, const Index3& at) {
-      if (!cells.is_fluid(indexing_.index(at[0], at[1], at[2]))) return;
-      for (const double difference : differences[n]) sums[0] = exact_sum(sums[0], LatticeFixed::from(difference));
+      const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
+      if (!cells.is_fluid(cell)) return;
+      for (int k = 0; k < entering; ++k) {
+        const double leaving = static_cast<double>(
+            populations.post_collision(D3Q19::opposite(directions_[static_cast<std::size_t>(k)]), cell));
+        double& entered = recycled_[n][static_cast<std::size_t>(k)];
+        if (std::isnan(entered)) entered = leaving;
+        sums[0] = exact_sum(sums[0], LatticeFixed::from(entered - leaving));
+      }
       ++sums[1];
     });
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, communicator);
   if (inlet_ < 0 || sums[1] == 0) return;
-  const double in_plane = LatticeFixed::to_double(sums[0]);
-  const double scale = in_plane > 0.0 ? std::clamp(mass_ / in_plane, 0.0, largest_scale) : 0.0;
-  const double uniform = (mass_ - scale * in_plane) / static_cast<double>(sums[1]);
+  const double missing = (mass_ - LatticeFixed::to_double(sums[0])) / static_cast<double>(sums[1]);
   for_cells(inlet_, [&](std::size_t n, const Index3& at) {
     const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
     if (!cells.is_fluid(cell)) return;
     for (int k = 0; k < entering; ++k) {
       const int o = directions_[static_cast<std::size_t>(k)];
       populations.incoming(o, cell) =
-          static_cast<Real>(static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
-                            scale * differences[n][static_cast<std::size_t>(k)] + 6.0 * D3Q19::weight(o) * uniform);
+          static_cast<Real>(recycled_[n][static_cast<std::size_t>(k)] + 6.0 * D3Q19::weight(o) * missing);
     }
   });
 }

@@ -19,7 +19,7 @@ template <typename Real>
 void Walls<Real>::apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator) {
   for (int face = 0; face < 6; ++face)
     if (present_[face] && !recycled_[face]) apply_face(populations, cells, face);
-  for (const auto& inflow : recycled_)
+  for (auto& inflow : recycled_)
     if (inflow) inflow->apply(populations, cells, communicator);
 }
 
