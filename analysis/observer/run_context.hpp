@@ -62,7 +62,8 @@ struct GrainContext {
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
   Force body_force = {};                                          // in a fluid only, as the next two
   Force submerged_weight = {};
-  Force buoyancy = {};  // the part of it that the fluid's load contains
+  Force buoyancy = {};         // the part of it that the fluid's load contains
+  bool recirculation = false;  // a sink puts grains in again elsewhere, at once or later
 
   GlobalId count() const { return populations.empty() ? 0 : populations.back().end; }  // number of ids
   std::vector<HeldGrains> held() const;

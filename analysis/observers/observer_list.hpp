@@ -10,6 +10,7 @@
 #include "analysis/observers/stress_balance.hpp"
 #include "analysis/observers/tracks.hpp"
 #include "analysis/observers/transport_rate.hpp"
+#include "analysis/reach/reach_keys.hpp"
 #include "analysis/sizes/fractional_transport.hpp"
 
 #include <memory>
@@ -45,7 +46,7 @@ public:
 private:
   template <IsObserverKeys... Keys>
   using OptionalKeys = std::tuple<std::optional<Keys>...>;
-  OptionalKeys<FluidStatisticsKeys, ProbesKeys, TransportRateKeys, FractionalTransportKeys, BedSurfaceKeys,
+  OptionalKeys<FluidStatisticsKeys, ProbesKeys, TransportRateKeys, FractionalTransportKeys, ReachKeys, BedSurfaceKeys,
                GrainProfilesKeys, StressBalanceKeys, PopulationLoadsKeys, TracksKeys, EntrainmentKeys>
       all_;
 };

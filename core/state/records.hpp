@@ -27,6 +27,7 @@ struct Event {
 
 struct Records {
   std::vector<WholeNumbers> fixed;  // the same from the first to the last time of a run
+  std::vector<Profile> places;      // the same: where the values of rows lie, coordinates such as x
   std::vector<Profile> rows;        // new rows: the first dimension is that of time; `time` (s) is one of them
   std::vector<Event> events;        // new ones, in order of time
 };

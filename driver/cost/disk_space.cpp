@@ -2,7 +2,9 @@
 
 #include "analysis/observers/probes.hpp"
 #include "analysis/observers/tracks.hpp"
+#include "analysis/reach/reach_keys.hpp"
 #include "driver/cost/run_cost.hpp"
+#include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/run_context.hpp"
 
@@ -77,7 +79,7 @@ double checkpoints(const Case& c) {
   return bytes_of_checkpoint(c) * std::min(written, most);
 }
 
-// Tracks and probes (docs/input.md).
+// Tracks, probes and the reach (docs/input.md).
 double records(const Case& c) {
   double bytes = 0.0;
   if (const auto& tracks = c.analysis.observers.of<analysis::TracksKeys>()) {
@@ -90,6 +92,11 @@ double records(const Case& c) {
     double points = static_cast<double>(probes->points.size());
     for (const analysis::ProbeLine& line : probes->lines) points += static_cast<double>(line.points);
     bytes += times_in(c, probes->every) * points * 4.0 * 8.0;
+  }
+  if (const auto& reach = c.analysis.observers.of<analysis::ReachKeys>(); reach && !c.grains.empty()) {
+    const auto sections = static_cast<double>(
+        reach->sections.value_or(analysis::default_sections(c.domain.size.x(), reference_grain(c).diameter)));
+    bytes += times_in(c, reach->record_every) * (2.0 + 9.0 * sections) * 8.0;
   }
   return bytes;
 }
@@ -115,10 +122,8 @@ std::string disk_line(const DiskSpace& space, double free) {
   std::string line = "disk       at most about " + bytes_text(space.total());
   if (space.total() > free) line += fmt::format(", more than the {} that are free in this folder", bytes_text(free));
   line += ":";
-  const std::pair<const char*, double> parts[] = {{"fluid", space.fluid},
-                                                  {"grains", space.grains},
-                                                  {"checkpoints", space.checkpoints},
-                                                  {"probes and tracks", space.records}};
+  const std::pair<const char*, double> parts[] = {
+      {"fluid", space.fluid}, {"grains", space.grains}, {"checkpoints", space.checkpoints}, {"records", space.records}};
   const char* separator = " ";
   for (const auto& [name, bytes] : parts) {
     if (bytes <= 0.0) continue;

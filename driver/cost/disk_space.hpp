@@ -11,7 +11,7 @@ namespace thalweg::driver {
 struct DiskSpace {
   double fluid, grains;  // all frames
   double checkpoints;    // those kept, and the one being written
-  double records;        // probes and tracks
+  double records;        // tracks, probes and the reach
   double total() const { return fluid + grains + checkpoints + records; }
 };
 DiskSpace disk_space(const Case& c);

@@ -61,6 +61,8 @@ analysis::GrainContext grain_context(const Case& c) {
   analysis::GrainContext context{populations_of(c),    reference.diameter,  reference.density,
                                  smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
   add_sizes(c, context);
+  context.recirculation =
+      std::any_of(c.sinks.begin(), c.sinks.end(), [](const auto& sink) { return sink.recirculation.has_value(); });
   for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.push_back(sphere.id);
   if (!has_fluid(c)) return context;
   context.body_force = body_force(c);

@@ -26,15 +26,15 @@ namespace {
 
 // All a run writes, and thalweg analyze; --overwrite removes these and nothing else. Records were files in older
 // versions.
-constexpr std::array run_contents{"case.yaml",    "series.csv",  "profiles.h5", "probes",         "tracks",
-                                  "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5", "grains.pvd",
-                                  "fluid.pvd",    "solids.pvd",  "grains",      "fluid",          "solids",
-                                  "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",         "run.log",
-                                  "summary.json", "analysis",    "stop"};
+constexpr std::array run_contents{"case.yaml",  "series.csv",   "profiles.h5", "probes",      "tracks",
+                                  "reach",      "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5",
+                                  "grains.pvd", "fluid.pvd",    "solids.pvd",  "grains",      "fluid",
+                                  "solids",     "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",
+                                  "run.log",    "summary.json", "analysis",    "stop"};
 // Entries that a continued run changes in place: folders, and files that are not replaced as a whole.
-constexpr std::array added_to{"checkpoints", "grains",    "fluid",     "solids", "fluid_parts",
-                              "grain_parts", "run.log",   "probes",    "tracks", "entrainment",
-                              "grains.pvd",  "fluid.pvd", "solids.pvd"};
+constexpr std::array added_to{"checkpoints", "grains",     "fluid",     "solids",    "fluid_parts",
+                              "grain_parts", "run.log",    "probes",    "tracks",    "reach",
+                              "entrainment", "grains.pvd", "fluid.pvd", "solids.pvd"};
 constexpr const char* latest_name = "latest";
 constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";

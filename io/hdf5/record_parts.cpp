@@ -76,6 +76,13 @@ bool has_fixed(Hdf5Reader& file, const WholeNumbers& numbers) {
   return found == numbers.values;
 }
 
+bool has_places(Hdf5Reader& file, const Profile& array) {
+  if (!file.has(array.name) || file.shape(array.name) != array.shape) return false;
+  std::vector<double> found(array.values.size());
+  file.read(array.name, std::span<double>(found), whole(array.shape));
+  return found == array.values;
+}
+
 bool has_rows(Hdf5Reader& file, const Profile& array) {
   const std::vector<std::uint64_t> found = file.has(array.name) ? file.shape(array.name) : std::vector<std::uint64_t>();
   return !found.empty() && found.size() == array.shape.size() &&
@@ -88,6 +95,8 @@ std::string mismatch(const fs::path& path, const Records& records) {
     Hdf5Reader file(path);
     for (const WholeNumbers& numbers : records.fixed)
       if (!has_fixed(file, numbers)) return fmt::format("its {} is not that of this run", numbers.name);
+    for (const Profile& array : records.places)
+      if (!has_places(file, array)) return fmt::format("its {} is not that of this run", array.name);
     for (const Profile& array : records.rows)
       if (!has_rows(file, array)) return fmt::format("its array {} has another shape", array.name);
     return {};
@@ -162,6 +171,7 @@ void RecordParts::write(std::int64_t step) {
 
 void RecordParts::keep(const Records& records) {
   kept_.fixed = records.fixed;
+  kept_.places = records.places;
   if (kept_.rows.empty()) {
     kept_.rows = records.rows;
   } else {
@@ -180,6 +190,7 @@ void RecordParts::write_part(std::int64_t step) {
   Hdf5Writer file(MPI_COMM_SELF, part(step));
   ArrayLabeller arrays(file);
   for (const WholeNumbers& numbers : kept_.fixed) arrays.write("", numbers);
+  for (const Profile& array : kept_.places) arrays.write("", array);
   for (const Profile& array : kept_.rows) arrays.write("", array);
   for (const Event& event : kept_.events) io::write(file, arrays, event);
   arrays.name_dimensions();

@@ -1,10 +1,10 @@
 // Records of an observer, such as tracks: a folder of HDF5 files, each written once and never changed.
 //
-// A part, part_<step>.h5, holds what was added up to its step and is in no earlier part: the `fixed` numbers, `rows` as
-// arrays whose first dimension is that of time, each event a group with its diagnostics and `time` as attributes (their
-// units beside them: `time_units`). Every array has its labels (labelled_arrays.hpp). A part gets its name
-// once it is on the disk, and before the checkpoint of its step is written: whenever a run ends, the parts up to a
-// checkpoint are whole and hold all that lies before it, and the later ones, by their names, go at a restart.
+// A part, part_<step>.h5, holds what was added up to its step and is in no earlier part: the `fixed` numbers and
+// `places`, `rows` as arrays whose first dimension is that of time, each event a group with its diagnostics and `time`
+// as attributes (their units beside them: `time_units`). Every array has its labels (labelled_arrays.hpp). A part gets
+// its name once it is on the disk, and before the checkpoint of its step is written: whenever a run ends, the parts up
+// to a checkpoint are whole and hold all that lies before it, and the later ones, by their names, go at a restart.
 #pragma once
 
 #include "core/state/records.hpp"
@@ -30,8 +30,8 @@ public:
   RecordParts(RecordParts&&) = default;
   RecordParts& operator=(RecordParts&&) = delete;
 
-  // Throws InputError where there are parts with other `fixed` numbers or shapes of rows; records: they may have no
-  // rows yet.
+  // Throws InputError where there are parts with other `fixed` numbers, places or shapes of rows; records: they may
+  // have no rows yet.
   void check(const Records& records) const;
 
   // Drops the parts after continue_from; where none is left, writes a first one. The first of the calls that write.
@@ -52,7 +52,7 @@ private:
   MPI_Comm communicator_;
   std::filesystem::path folder_;
   std::optional<std::int64_t> continue_from_;
-  Records kept_;                // on rank 0: added and not written; its `fixed` stays
+  Records kept_;                // on rank 0: added and not written; `fixed` and `places` stay
   std::size_t kept_bytes_ = 0;  // of its numbers
   std::int64_t kept_until_ = 0;
 };

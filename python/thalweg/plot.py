@@ -85,6 +85,11 @@ def draw_sizes(wanted):
     return draw_of_each_run(wanted, lambda run: ("sizes", lambda: by_size.figure_of(run)))
 
 
+def draw_reach(wanted):
+    reach = module("thalweg.figures.reach")
+    return draw_of_each_run(wanted, lambda run: ("reach", lambda: reach.figure_of(run)))
+
+
 def draw_relation(wanted):
     yield saved(
         module("thalweg.figures.relation").draw(wanted.runs, wanted.start, wanted.stop, wanted.surface, wanted.table),
@@ -174,6 +179,9 @@ def add_to(commands):
         "Means over the height: solid fraction, velocities, stresses and their balance",
     )
     add_kind(kinds, "sizes", draw_sizes, "Transport by size class, and gradings of bed, surface and load")
+    add_kind(
+        kinds, "reach", draw_reach, "Sediment along x: level of the bed and transport in x and time, and their means"
+    )
     relation = add_kind(
         kinds, "relation", draw_relation, "q* against the Shields number, beside relations and data of the literature",
         several="transport_relation",

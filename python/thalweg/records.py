@@ -1,4 +1,4 @@
-"""What observers have recorded (`tracks/`, `probes/`, `entrainment/`): parts of a run as HDF5 files, joined along
+"""What observers have recorded (`tracks/`, `probes/`, `reach/`, `entrainment/`): parts of a run as HDF5 files, joined along
 time."""
 import re
 from collections.abc import Mapping
@@ -34,7 +34,8 @@ class Records(Labelled):
             self.named = dimensions_in(arrays)
             for name, data in arrays.items():
                 self.units[name], self._shapes[name] = unit_of(data), data.shape
-                if data.dtype.kind == "f":   # what is the same throughout are whole numbers
+                # What is the same throughout are whole numbers, and coordinates other than time.
+                if data.dtype.kind == "f" and self.named.get(name, ("time",))[0] == "time":
                     self._rows.add(name)
                 if "components" in data.attrs:
                     self.components[name] = components_of(data)

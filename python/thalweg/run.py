@@ -107,6 +107,13 @@ class Run:
         return Probes(parts, float(self.case["domain"]["spacing"]))
 
     @cached_property
+    def reach(self):
+        """Sediment along x in time (`analysis.reach`): arrays [time, section] of transport and [time, x] of the bed,
+        with `time` (s, of the end of a record), `interval` (s), `section` and `x` (m), each read when it is asked for;
+        means over time are in `profiles["reach"]`. RunFolderError where none are recorded."""
+        return Records(self._recorded("reach"))
+
+    @cached_property
     def entrainment(self):
         """Events at which grains started to move (`analysis.entrainment`) by name, each with its arrays and, as
         `attributes`, its single numbers. RunFolderError where they are not looked for."""

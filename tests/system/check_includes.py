@@ -44,7 +44,7 @@ ROOMS = {
     "model_fluid": (),
     "coupling": ("loads", "keys", "system"),
     "continuum": (),
-    "analysis": ("observer", "tools", "sizes", "observers"),
+    "analysis": ("observer", "tools", "sizes", "reach", "observers"),
     "io": ("files", "text", "vtk", "hdf5", "folder"),
     "loop": (),
     "driver": ("case", "estimate", "input", "setup", "cost", "execution", "plan", "cli"),

@@ -1,7 +1,7 @@
 """Which figures a run calls for."""
 from thalweg import drawing, height_profiles
 from thalweg.errors import RunFolderError
-from thalweg.figures import fluid_profiles, sizes, transport_rate
+from thalweg.figures import fluid_profiles, reach, sizes, transport_rate
 from thalweg.sizes import measured as measured_by_size
 
 
@@ -41,5 +41,7 @@ def figures_of(run, time=None):
         figures.append(("transport_rate", lambda: transport_rate.figure_of(run)))
     if measured_by_size(run):
         figures.append(("sizes", lambda: sizes.figure_of(run)))
+    if reach.measured(run):
+        figures.append(("reach", lambda: reach.figure_of(run)))
     profiles = profiles_of(run)
     return figures + ([("profiles", profiles)] if profiles else [])

@@ -6,7 +6,7 @@ from datetime import datetime
 import numpy as np
 
 from thalweg.errors import RunFolderError
-from thalweg.figures import fluid_profiles, overview, sizes, transport_rate
+from thalweg.figures import fluid_profiles, overview, reach, sizes, transport_rate
 from thalweg.page import html
 from thalweg.page.figures import column_figure, series_figure
 from thalweg.history import command_of, sessions_of, settings_in, warnings_of
@@ -28,8 +28,8 @@ def page_of(run):
     """The whole page."""
     sessions = sessions_of(run.folder)
     parts = [
-        heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run), profiles(run),
-        course(run), warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions),
+        heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run),
+        reach_section(run), profiles(run), course(run), warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions),
         repetition(run), footer(run),
     ]
     return html.document(f"{run.name} - Thalweg", "\n".join(part for part in parts if part))
@@ -146,6 +146,26 @@ def size_section(run):
         "Transport by size class", attempt(lambda: sizes.figure_of(run), caption),
         html.paragraph(found.sentence() + "."), html.table(found.rows(), found.HEADINGS, range(1, len(found.HEADINGS))),
     )
+
+
+def reach_section(run):
+    """Sediment along x."""
+    if not reach.measured(run):
+        return ""
+    caption = (
+        "Sediment along x. Above: level of the bed; middle: transport through the sections; below: their means over time,"
+        " with a band of one standard error."
+    )
+    found, parts = (run.summary or {}).get("reach") or {}, []
+    if found:
+        parts.append(
+            html.paragraph(
+                f"{number(found['arrived_grains'])} grains came in and {number(found['left_grains'])} left; the mean"
+                f" residence time of those that did both is {number(found['residence_time_mean'], 3)} s. The balance of"
+                f" the bins is out by {number(found['balance_residual'])} grains."
+            )
+        )
+    return html.section("Along the reach", attempt(lambda: reach.figure_of(run), caption), *parts)
 
 
 def profiles(run):

@@ -62,6 +62,9 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   EXPECT_NEAR(space.fluid, 301.0 * 240.0 * 212.0 * 5.0 * 4.0, 1.0);
   EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 32.0 * 8.0, 1.0);
   EXPECT_NEAR(space.records, 30001.0 * 334.0 * 144.0, 1.0);
+  Case reach = c;
+  reach.analysis.observers.of<analysis::ReachKeys>() = {.record_every = 0.5, .sections = 24};
+  EXPECT_NEAR(disk_space(reach).records - space.records, 61.0 * (2.0 + 24.0 * 9.0) * 8.0, 1.0);
   const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
   EXPECT_GT(space.checkpoints, 3.0 * state);
   EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));

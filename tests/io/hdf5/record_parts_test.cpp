@@ -23,10 +23,11 @@ using testing::ScratchFolder;
 constexpr int first_events = 12;
 
 // Rows at whole seconds from `first` to before `end`: a number a row and two vectors; an event at each of the first.
-Records seconds(int first, int end, std::vector<std::int64_t> id = {4, 7}) {
+Records seconds(int first, int end, std::vector<std::int64_t> id = {4, 7}, double x = 0.5) {
   Records records;
   if (rank_of(MPI_COMM_WORLD) != 0) return records;
   records.fixed = {{"id", "id", std::move(id)}};
+  records.places = {{"x", "m", {"x"}, {}, {3}, {x, 1.5, 2.5}}};
   const auto rows = static_cast<std::uint64_t>(end - first);
   records.rows = {{"time", "s", {"time"}, {}, {rows}, {}},
                   {"velocity", "m/s", {"time", "id"}, {"x", "y", "z"}, {rows, 2, 3}, {}}};
@@ -70,6 +71,7 @@ std::vector<std::pair<std::string, std::vector<double>>> parts_in(const std::fil
     }
     EXPECT_EQ(numbers(file, "velocity"), velocities);
     EXPECT_EQ(numbers<std::int64_t>(file, "id"), (std::vector<std::int64_t>{4, 7}));
+    EXPECT_EQ(numbers(file, "x"), (std::vector<double>{0.5, 1.5, 2.5}));
     EXPECT_EQ(file.text_attribute("velocity/components"), "x y z");
     EXPECT_EQ(file.text_attribute("velocity/units"), "m/s");
   }
@@ -148,11 +150,12 @@ TEST(RecordParts, RefuseWhatTheyCannotContinue) {
   const ScratchFolder folder;
   record_to_nine(folder / "tracks");
   const RecordParts other(MPI_COMM_WORLD, folder / "tracks", 5);
-  const auto refused = [&](const std::vector<std::int64_t>& id) {
-    return message_of<InputError>([&] { other.check(seconds(3, 3, id)); });
+  const auto refused = [&](const std::vector<std::int64_t>& id, double x = 0.5) {
+    return message_of<InputError>([&] { other.check(seconds(3, 3, id, x)); });
   };
   EXPECT_EQ(refused({4, 7}), "");
   EXPECT_NE(refused({4, 8}).find("its id is not that of this run; move the folder tracks away"), std::string::npos);
+  EXPECT_NE(refused({4, 7}, 0.6).find("its x is not that of this run"), std::string::npos);
   if (rank_of(MPI_COMM_WORLD) == 0) put(folder / "tracks/part_000000003.h5", "damaged");
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_NE(refused({4, 7}).find("part_000000003.h5: the records cannot be continued, it is damaged"),

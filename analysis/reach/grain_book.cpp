@@ -1,0 +1,137 @@
+#include "analysis/reach/grain_book.hpp"
+
+#include "core/base/error.hpp"
+#include "core/parallel/mpi_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::analysis {
+
+namespace {
+
+constexpr double from_the_start = -1.0;  // s, for Memory::since
+
+}  // namespace
+
+GrainBook::Page GrainBook::look(double time, const PeriodicBox& box, GlobalId end_of_ids,
+                                const std::vector<Body>& bodies) {
+  const bool first = !homes_;
+  if (first) homes_.emplace(communicator_, end_of_ids);
+  homes_->grow(end_of_ids);
+  memory_.resize(homes_->size());
+  double fastest = 0.0;
+  std::vector<Sighting> sightings;
+  for (const Body& body : bodies) {
+    const Vec3 &x = body.position, &v = body.velocity;
+    sightings.push_back({body.id, x.x(), x.y(), x.z(), v.x(), v.y(), v.z(), body.volume});
+    fastest = std::max(fastest, v.norm());
+  }
+  fastest = max_over_ranks(communicator_, fastest);
+  const double duration = time - last_time_;
+  const Interval interval{time, duration, diameter_ + 2.0 * std::max(fastest, last_speed_) * duration, first, box};
+
+  Page page;
+  std::vector<char> here(memory_.size(), 0);
+  for (const Sighting& seen : homes_->bring_home(sightings)) {
+    const std::size_t place = homes_->location_of(seen.id);
+    follow(memory_[place], seen, interval, page);
+    here[place] = 1;
+  }
+  for (std::size_t place = 0; place < memory_.size(); ++place) {
+    if (here[place] != 0 || memory_[place].state == absent) continue;
+    leave(memory_[place], time, page);
+    memory_[place] = {};
+  }
+  last_time_ = time;
+  last_speed_ = fastest;
+  return page;
+}
+
+void GrainBook::follow(Memory& memory, const Sighting& seen, const Interval& interval, Page& page) const {
+  Memory now{absent, {seen.x, seen.y, seen.z}, {seen.v_x, seen.v_y, seen.v_z}, seen.volume, memory.since};
+  now.state = now.velocity.squaredNorm() > moving_speed_ * moving_speed_ ? moving : at_rest;
+  const std::int64_t bin = sections_.bin_of(seen.x);
+  const std::optional<std::int64_t> boxes = memory.state == absent ? std::nullopt : boxes_gone(memory, now, interval);
+  if (boxes) {
+    const std::int64_t bin_before = sections_.bin_of(memory.position.x());
+    cross(bin_before, bin + *boxes * sections_.bins, seen.volume, page);
+    if (memory.state == at_rest && now.state == moving)
+      page.entries.push_back({Passage::entrained, bin_before, seen.volume});
+    if (memory.state == moving && now.state == at_rest) page.entries.push_back({Passage::deposited, bin, seen.volume});
+  } else if (interval.first) {
+    now.since = from_the_start;
+  } else {
+    if (memory.state != absent) leave(memory, interval.time, page);
+    page.entries.push_back({Passage::arrived, bin, seen.volume});
+    now.since = interval.time;
+  }
+  memory = now;
+}
+
+std::optional<std::int64_t> GrainBook::boxes_gone(const Memory& before, const Memory& now,
+                                                  const Interval& interval) const {
+  // By how far it lies from where its velocities would have taken it.
+  Vec3 off = now.position - before.position - 0.5 * interval.duration * (before.velocity + now.velocity);
+  std::int64_t boxes_along_x = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!interval.box.periodic[static_cast<std::size_t>(axis)]) continue;
+    const double boxes = std::round(off[axis] / interval.box.size[axis]);
+    off[axis] -= boxes * interval.box.size[axis];
+    if (axis == 0) boxes_along_x = -std::llround(boxes);
+  }
+  if (recirculation_ && off.norm() > interval.reach) return std::nullopt;
+  return boxes_along_x;
+}
+
+// from, to: bins, the second of them beyond the box where a grain has gone round.
+void GrainBook::cross(std::int64_t from, std::int64_t to, double volume, Page& page) const {
+  const Passage passage = to > from ? Passage::downstream : Passage::upstream;
+  for (std::int64_t k = std::min(from, to) + 1; k <= std::max(from, to); ++k)
+    page.entries.push_back({passage, sections_.inside(k), volume});
+}
+
+void GrainBook::leave(const Memory& memory, double time, Page& page) const {
+  page.entries.push_back({Passage::left, sections_.bin_of(memory.position.x()), memory.volume});
+  if (memory.since >= 0.0) page.stays.push_back(time - memory.since);
+}
+
+void GrainBook::save(ArchiveWriter& archive, const std::string& group) const {
+  archive.attribute(group + "/looked_last", last_time_);
+  archive.attribute(group + "/largest_speed", last_speed_);
+  if (!homes_) return;
+  std::vector<double> rows;
+  for (const Memory& m : memory_)
+    rows.insert(rows.end(), {static_cast<double>(m.state), m.position.x(), m.position.y(), m.position.z(),
+                             m.velocity.x(), m.velocity.y(), m.velocity.z(), m.volume, m.since});
+  homes_->write(archive, group + "/grains", std::move(rows), columns);
+}
+
+void GrainBook::load(ArchiveReader& archive, const std::string& group) {
+  last_time_ = archive.real_attribute(group + "/looked_last");
+  last_speed_ = archive.real_attribute(group + "/largest_speed");
+  if (!archive.has(group + "/grains")) return;
+  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/grains").at(0)));
+  memory_.assign(homes_->size(), {});
+  const auto rows = homes_->read<double>(archive, group + "/grains", columns);
+  bool damaged = false;
+  for (std::size_t m = 0; m < memory_.size(); ++m) {
+    const double* row = rows.data() + m * columns;
+    const bool known = row[0] == 0.0 || row[0] == 1.0 || row[0] == 2.0;
+    damaged |= !known || !std::all_of(row, row + columns, [](double value) { return std::isfinite(value); });
+    memory_[m] = {known ? static_cast<State>(static_cast<int>(row[0])) : absent,
+                  {row[1], row[2], row[3]},
+                  {row[4], row[5], row[6]},
+                  row[7],
+                  row[8]};
+  }
+  if (any_rank(communicator_, damaged))
+    throw InputError(
+        fmt::format("The book of the grains in {}/grains of the checkpoint is damaged; restart from an "
+                    "earlier checkpoint or without analysis.{}.",
+                    group, group));
+}
+
+}  // namespace thalweg::analysis

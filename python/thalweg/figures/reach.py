@@ -1,0 +1,79 @@
+"""Sediment along a reach (`analysis.reach`): level of the bed and transport in x and time, and their means."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from thalweg.errors import RunFolderError
+from thalweg.height_profiles import GRID
+from thalweg.records import parts_of
+
+BED, RATE = "#7f6a4d", "#14496e"
+Q_STAR = r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
+
+
+def measured(run):
+    """Whether the run has a record yet."""
+    return bool(parts_of(run.folder, "reach")) and len(run.reach["time"]) > 0
+
+
+def edges_of(places):
+    """Edges of cells about places at equal distances."""
+    half = 0.5 * (places[1] - places[0]) if len(places) > 1 else 0.5 * max(places[0], 1e-3)
+    return np.append(places - half, places[-1] + half)
+
+
+def draw_in_time(figure, axes, reach, name, factor, label, **colours):
+    """An array [time, place] as colours over x (mm) and the time of the records."""
+    places = reach[reach.dimensions(name)[1]]
+    times = np.append(reach["time"][0] - reach["interval"][0], reach["time"])
+    drawn = axes.pcolormesh(1e3 * edges_of(places), times, np.ma.masked_invalid(factor * reach[name]), **colours)
+    axes.set_facecolor("0.85")
+    axes.set_ylabel("time $t$ [s]")
+    figure.colorbar(drawn, ax=axes, label=label, pad=0.01)
+
+
+def colours_of(rates):
+    """From nought on; about nought where the transport goes upstream somewhere."""
+    low, high = float(np.nanmin(rates)), float(np.nanmax(rates))
+    if low < 0.0:
+        return {"cmap": "RdBu_r", "vmin": -max(-low, high), "vmax": max(-low, high)}
+    return {"cmap": "viridis", "vmin": 0.0, "vmax": high or 1.0}
+
+
+def draw_means(axes, means, name, label):
+    """The mean transport of the sections with its error, and at the right the mean level of the bins."""
+    x, rate, error = 1e3 * means["section"], means[name], np.nan_to_num(means[f"{name}_error"])
+    axes.fill_between(x, rate - error, rate + error, color=RATE, alpha=0.2, lw=0)
+    axes.plot(x, rate, color=RATE, lw=1.4)
+    axes.set_ylabel(label, color=RATE)
+    axes.set_ylim(min(0.0, np.nanmin(rate - error)), None)
+    axes.grid(**GRID)
+    level = axes.twinx()
+    level.plot(1e3 * means["x"], 1e3 * means["bed_level"], color=BED, lw=1.4)
+    level.set_ylabel("bed level $z_b$ [mm]", color=BED)
+    level.spines["top"].set_visible(False)
+    axes.spines["top"].set_visible(False)
+
+
+def figure_of(run):
+    """Above the level of the bed and below it the transport, in x and time; at the bottom their means over time."""
+    reach = run.reach
+    if not len(reach["time"]):
+        raise RunFolderError(
+            f"{run.folder}: no record of the reach is complete yet (analysis.reach.record_every in the case)."
+        )
+    name, label = ("q_star", Q_STAR) if "q_star" in reach else ("q_s", r"$q_s$ [m$^2$/s]")
+    means = run.profiles.get("reach")
+    has_means = means is not None and bool(np.isfinite(means[name]).any())
+    figure, panels = plt.subplots(
+        3 if has_means else 2, 1, figsize=(7.2, 7.5 if has_means else 5.4), sharex=True, layout="constrained"
+    )
+    draw_in_time(figure, panels[0], reach, "bed_level", 1e3, "bed level $z_b$ [mm]", cmap="cividis")
+    draw_in_time(figure, panels[1], reach, name, 1.0, label, **colours_of(reach[name]))
+    if has_means:
+        draw_means(panels[2], means, name, label)
+        panels[2].set_title(
+            f"means from {run.averaged_from('reach'):.4g} s on, in a band of one standard error", fontsize=9, loc="left"
+        )
+    panels[-1].set(xlabel="x [mm]", xlim=(0.0, 1e3 * run.size[0]))
+    figure.suptitle(run.name, fontsize=11)
+    return figure

@@ -1,0 +1,110 @@
+"""Sediment along a reach as Python shows it: records, figure and page of a run whose numbers are known."""
+import json
+import unittest
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+
+import made_up_folder as made_up
+import thalweg
+from thalweg.errors import RunFolderError
+from thalweg.figures import overview
+from thalweg.figures import reach as figure
+from thalweg.page.sections import reach_section
+
+X, SECTION = np.array([0.01, 0.03, 0.05]), np.array([0.02, 0.04])
+Q_STAR = np.array([[0.0, 0.1], [0.2, 0.3], [0.4, 0.5]])   # [time, section]
+LEVEL = np.array([[0.01, 0.02, np.nan], [0.012, 0.02, 0.03], [0.014, 0.02, 0.03]])   # m, [time, x]
+
+
+class ReachTest(made_up.MadeUpFolder):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "case.yaml").write_text(
+            made_up.CASE.replace("from: 1.0}", "from: 1.0}, reach: {from: 1.0, record_every: 0.5}")
+            .replace("0.12, 0.0105", "0.06, 0.0105")
+        )
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n1,1\n2,1\n3,1\n")
+        self.write_part(0, slice(0, 0))
+        self.write_part(10, slice(0, 2))
+        self.write_part(20, slice(2, 3))
+
+    def write_part(self, step, rows):
+        (self.folder / "reach").mkdir(exist_ok=True)
+        with h5py.File(self.folder / f"reach/part_{step:09d}.h5", "w") as file:
+            for name, values, unit, axes in (
+                ("section", SECTION, "m", "section"), ("x", X, "m", "x"),
+                ("time", np.array([0.5, 1.0, 1.5])[rows], "s", "time"), ("interval", np.full(3, 0.5)[rows], "s", "time"),
+                ("q_star", Q_STAR[rows], "1", "time section"), ("bed_level", LEVEL[rows], "m", "time x"),
+            ):
+                made_up.write_array(file, f"/{name}", values, unit, axes)
+
+    def write_means(self, value=0.25):
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            for name, values, unit, axis in (
+                ("section", SECTION, "m", "section"), ("x", X, "m", "x"), ("q_star", [value, 0.5], "1", "section"),
+                ("q_star_error", [0.05, 0.1], "1", "section"), ("bed_level", [0.012, 0.02, 0.03], "m", "x"),
+            ):
+                made_up.write_array(file, f"reach/{name}", np.array(values), unit, axis)
+
+    def run_(self):
+        return thalweg.Run(self.folder)
+
+    def test_records_are_joined_and_places_are_not(self):
+        reach = self.run_().reach
+        np.testing.assert_array_equal(reach["x"], X)
+        np.testing.assert_array_equal(reach["section"], SECTION)
+        np.testing.assert_array_equal(reach["time"], [0.5, 1.0, 1.5])
+        np.testing.assert_array_equal(reach["q_star"], Q_STAR)
+        self.assertEqual(reach.dimensions("bed_level"), ("time", "x"))
+        self.assertEqual(reach.units["bed_level"], "m")
+
+    def test_figure(self):
+        self.write_means()
+        drawn = figure.figure_of(self.run_())
+        level, rate, means = drawn.axes[:3]
+        np.testing.assert_array_equal(rate.collections[0].get_array().ravel(), Q_STAR.ravel())
+        np.testing.assert_allclose(
+            np.ma.filled(level.collections[0].get_array(), np.nan).reshape(3, 3), 1e3 * LEVEL
+        )
+        (line,) = means.lines
+        np.testing.assert_allclose(line.get_xydata(), [[20.0, 0.25], [40.0, 0.5]])
+        (bed,) = drawn.axes[-1].lines
+        np.testing.assert_allclose(bed.get_xydata()[:, 1], [12.0, 20.0, 30.0])
+        plt.close(drawn)
+
+    def test_upstream_transport_has_colours_of_its_own(self):
+        self.assertEqual(figure.colours_of(Q_STAR)["vmin"], 0.0)
+        about_nought = figure.colours_of(Q_STAR - 0.6)
+        self.assertEqual((about_nought["vmin"], about_nought["vmax"]), (-0.6, 0.6))
+
+    def test_before_the_means_begin(self):
+        self.write_means(np.nan)
+        with h5py.File(self.folder / "profiles.h5", "a") as file:
+            file["reach/q_star"][...] = np.nan
+        drawn = figure.figure_of(self.run_())
+        self.assertEqual(len(drawn.axes), 4)   # two panels and their colours
+        plt.close(drawn)
+        self.assertIn("reach", [name for name, _ in overview.figures_of(self.run_())])
+
+    def test_page(self):
+        self.write_means()
+        found = {"arrived_grains": 12, "left_grains": 10, "residence_time_mean": 0.75, "balance_residual": 0}
+        (self.folder / "summary.json").write_text(json.dumps({"reach": found}))
+        self.assertIn("12 grains came in and 10 left", reach_section(self.run_()))
+
+    def test_a_run_without(self):
+        for part in (self.folder / "reach").iterdir():
+            part.unlink()
+        self.assertEqual(reach_section(self.run_()), "")
+        with self.assertRaisesRegex(RunFolderError, "it has no reach yet"):
+            figure.figure_of(self.run_())
+        self.write_part(0, slice(0, 0))
+        self.assertNotIn("reach", [name for name, _ in overview.figures_of(self.run_())])
+        with self.assertRaisesRegex(RunFolderError, "no record of the reach is complete"):
+            figure.figure_of(self.run_())
+
+
+if __name__ == "__main__":
+    unittest.main()
