@@ -120,6 +120,16 @@ double largest_diameter(const Case& c) {
   return diameter;
 }
 
+double largest_size(const beds::Population& grains) {
+  return grains.shape ? grains.coarsest() : grains.largest_diameter();
+}
+
+double largest_size(const Case& c) {
+  double size = 0.0;
+  for (const beds::Population& population : c.grains) size = std::max(size, largest_size(population));
+  return size;
+}
+
 double largest_extent(const Case& c) {
   double extent = 0.0;
   for (const beds::Population& population : c.grains) extent = std::max(extent, population.largest_extent());

@@ -216,14 +216,16 @@ double relaxation_time(const Case& c);            // BGK, without the subgrid mo
 double bulk_relaxation_time_for(const Case& c);   // tau_b where the case does not give it; 0: that of the shear
 double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), without the subgrid model
 
-std::int64_t grain_count(const Case& c);           // grains of all populations
-std::int64_t grain_rows(const Case& c);            // ids that they take: a clump as many as it has members
-bool measures_grain_stress(const Case& c);         // true if the stress of the fluid on every grain is measured
-double largest_diameter(const Case& c);            // m; 0 without grains
-double largest_extent(const Case& c);              // m, the same with clumps as they are long
-double smallest_diameter(const Case& c);           // m; 0 without grains
-double grain_volume(const Case& c);                // m^3, of all grains
-model_fluid::MeanGrain mean_grain(const Case& c);  // mean of all grains
+std::int64_t grain_count(const Case& c);              // grains of all populations
+std::int64_t grain_rows(const Case& c);               // ids that they take: a clump as many as it has members
+bool measures_grain_stress(const Case& c);            // true if the stress of the fluid on every grain is measured
+double largest_diameter(const Case& c);               // m, of spheres and members of clumps; 0 without grains
+double largest_size(const beds::Population& grains);  // m, of spheres, and of clumps the nominal diameter
+double largest_size(const Case& c);                   // m, of all populations
+double largest_extent(const Case& c);                 // m, the same with clumps as they are long
+double smallest_diameter(const Case& c);              // m; 0 without grains
+double grain_volume(const Case& c);                   // m^3, of all grains
+model_fluid::MeanGrain mean_grain(const Case& c);     // mean of all grains
 model_fluid::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);

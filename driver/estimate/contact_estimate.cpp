@@ -99,7 +99,7 @@ double largest_stokes_number(const Case& c) {
   const double speed = std::max(expected_overlaps(c).speed, flow_estimate(c).speed);
   double ratio = 0.0;
   for (const std::size_t p : free_populations(c)) ratio = std::max(ratio, c.grains[p].density / c.fluid.density);
-  return ratio * speed * largest_diameter(c) / (9.0 * c.fluid.kinematic_viscosity);
+  return ratio * speed * largest_size(c) / (9.0 * c.fluid.kinematic_viscosity);
 }
 
 }  // namespace

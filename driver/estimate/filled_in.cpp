@@ -32,7 +32,7 @@ void fill_in_profile(Case& c) {
   if (open.shear_velocity) profile.shear_velocity = flow.friction_velocity;
   if (open.roughness)
     profile.roughness = c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, *profile.shear_velocity)
-                                         : largest_diameter(c) / roughness_a_diameter;
+                                         : largest_size(c) / roughness_a_diameter;
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ Channel channel_of(const Case& c) {
   channel.depth = c.domain.size.z() - settled_height(c);
   channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
   channel.half_width = walls == 0 ? infinite : width / walls;
-  channel.roughness = largest_diameter(c) / roughness_a_diameter;
+  channel.roughness = largest_size(c) / roughness_a_diameter;
   channel.viscosity = c.fluid.kinematic_viscosity;
   channel.radius = surfaces > 0 ? hydraulic_radius(c, channel.reach) : walls > 0 ? width / walls : channel.depth;
   return channel;
@@ -245,8 +245,8 @@ double given_speed(const beds::Population& grains) {
 
 // m/s, of the largest grain of a population.
 double settling_velocity_of(const Case& c, const beds::Population& grains) {
-  return settling_velocity(grains.largest_diameter(), grains.density / c.fluid.density,
-                           gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
+  return settling_velocity(largest_size(grains), grains.density / c.fluid.density, gravity_vector(c.gravity).norm(),
+                           c.fluid.kinematic_viscosity);
 }
 
 bool starts_from_a_bed(const Case& c, const beds::Population& grains) {

@@ -148,7 +148,7 @@ Warnings unmapped_relaxation(const Case& c) {
 
 Warnings laminar_flow(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
-  const double falling = settling_velocity(c) * largest_diameter(c) / c.fluid.kinematic_viscosity;
+  const double falling = settling_velocity(c) * largest_size(c) / c.fluid.kinematic_viscosity;
   const bool slow_grains = flow.drive == FlowCause::none && falling > 0.0 && falling < 10.0;
   if (!smagorinsky(c) || !(slow_grains || (flow.drive != FlowCause::none && flow.laminar))) return {};
   return {

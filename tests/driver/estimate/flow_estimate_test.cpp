@@ -3,6 +3,7 @@
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/plan/case_warnings.hpp"
+#include "tests/driver/case_texts.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
@@ -229,6 +230,16 @@ TEST(Warnings, OfWaterAtRestThatAnInletSetsGoing) {
   c.initial.fluid.uniform.reset();
   c.grains[0].fixed = true;  // nothing to throw about
   EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
+}
+
+// Roughness and fall of a clump are those of the sphere of its volume, however small its members are.
+TEST(FlowEstimate, OfClumpsIsThatOfTheirNominalDiameter) {
+  const std::string shape =
+      "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 1.0}, {position: [0.5, 0, 0], diameter: 1.0}]}";
+  const Case spheres = testing::read_text(testing::flume), clumps = testing::read_text(testing::flume, {shape});
+  EXPECT_LT(clumps.grains[0].largest_diameter(), 0.9 * spheres.grains[0].largest_diameter());
+  EXPECT_NEAR(flow_estimate(clumps).speed, flow_estimate(spheres).speed, 1e-9);
+  EXPECT_NEAR(settling_velocity(clumps), settling_velocity(spheres), 1e-9);
 }
 
 TEST(FlowEstimate, OfAStreamThatNothingHoldsBackHasNoFriction) {
