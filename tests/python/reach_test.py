@@ -79,6 +79,10 @@ class ReachTest(made_up.MadeUpFolder):
         about_nought = figure.colours_of(Q_STAR - 0.6)
         self.assertEqual((about_nought["vmin"], about_nought["vmax"]), (-0.6, 0.6))
 
+    def test_colours_are_those_of_the_records_that_count(self):
+        run = self.run_()
+        np.testing.assert_array_equal(figure.counted(run, run.reach), [False, False, True])   # it begins at 1 s
+
     def test_before_the_means_begin(self):
         self.write_means(np.nan)
         with h5py.File(self.folder / "profiles.h5", "a") as file:

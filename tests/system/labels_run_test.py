@@ -32,9 +32,16 @@ ARRAYS = {
             "velocity_density": ("s/m", "velocity_bin axis"), "hop_time_count": ("1", "hop_time_bin"),
             "hop_length_edges": ("m", "hop_length_edges"),
         }, "bed_surface": {"static_surface": ("m", "x")},
+        "reach": {"q_s_error": ("m^2/s", "section"), "deposition_rate": ("m/s", "x")},
     }, "tracks": {"/": {"position": ("m", "time id axis"), "time": ("s", "time"), "id": ("1", "id")}},
     "probes": {
         "/": {"velocity": ("m/s", "time point axis"), "pressure": ("Pa", "time point"), "cell_y": ("1", "point")}
+    },
+    "reach": {
+        "/": {
+            "bed_level": ("m", "time x"), "q_s": ("m^2/s", "time section"), "x": ("m", "x"),
+            "section": ("m", "section"), "interval": ("s", "time"),
+        }
     },
     "entrainment": {
         "event_000001": {
@@ -55,6 +62,7 @@ class LabelsRun(ProgramTest):
   stress_balance: {from: 0.1}
   transport_rate: {from: 0.1}
   bed_surface: {from: 0.1}
+  reach: {from: 0.1, every: 0.01, record_every: 0.05}
 """
 
     def setUp(self):
@@ -113,8 +121,8 @@ class LabelsRun(ProgramTest):
     def test_python_has_the_names_of_the_file(self):
         run = thalweg.Run(self.folder / "run")
         read = {
-            "tracks": {"/": run.tracks}, "probes": {"/": run.probes}, "entrainment": run.entrainment,
-            "profiles.h5": run.profiles,
+            "tracks": {"/": run.tracks}, "probes": {"/": run.probes}, "reach": {"/": run.reach},
+            "entrainment": run.entrainment, "profiles.h5": run.profiles,
         }
         for name, groups in read.items():
             for group, arrays in ARRAYS[name].items():

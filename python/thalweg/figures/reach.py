@@ -28,7 +28,8 @@ def draw_in_time(figure, axes, reach, name, factor, label, **colours):
     drawn = axes.pcolormesh(1e3 * edges_of(places), times, np.ma.masked_invalid(factor * reach[name]), **colours)
     axes.set_facecolor("0.85")
     axes.set_ylabel("time $t$ [s]")
-    figure.colorbar(drawn, ax=axes, label=label, pad=0.01)
+    beyond = "max" if np.nanmax(factor * reach[name]) > drawn.get_clim()[1] else "neither"
+    figure.colorbar(drawn, ax=axes, label=label, pad=0.01, extend=beyond)
 
 
 def colours_of(rates):
@@ -37,6 +38,12 @@ def colours_of(rates):
     if low < 0.0:
         return {"cmap": "RdBu_r", "vmin": -max(-low, high), "vmax": max(-low, high)}
     return {"cmap": "viridis", "vmin": 0.0, "vmax": high or 1.0}
+
+
+def counted(run, reach):
+    """Which records count in the means; all where none does. A start, where a bed settles, may carry far more."""
+    found = reach["time"] - reach["interval"] >= run.averaged_from("reach") * (1.0 - 1e-9)
+    return found if found.any() else np.ones_like(found)
 
 
 def draw_means(axes, means, name, label):
@@ -68,7 +75,7 @@ def figure_of(run):
         3 if has_means else 2, 1, figsize=(7.2, 7.5 if has_means else 5.4), sharex=True, layout="constrained"
     )
     draw_in_time(figure, panels[0], reach, "bed_level", 1e3, "bed level $z_b$ [mm]", cmap="cividis")
-    draw_in_time(figure, panels[1], reach, name, 1.0, label, **colours_of(reach[name]))
+    draw_in_time(figure, panels[1], reach, name, 1.0, label, **colours_of(reach[name][counted(run, reach)]))
     if has_means:
         draw_means(panels[2], means, name, label)
         panels[2].set_title(
