@@ -179,6 +179,25 @@ bool SolidCells::opens_along_x(double least_height) const {
   return false;
 }
 
+bool lies_within(const Case& c, const SolidCase& inner, const SolidCase& outer) {
+  Vec3 step;
+  for (int axis = 0; axis < 3; ++axis)
+    step[axis] = std::max(c.domain.spacing, c.domain.size[axis] / most_along_an_axis);
+  const Columns columns = columns_of(inner, c, step.x(), step.y());
+  const Crossings around = crossings_of(outer, columns);
+  bool any = false, all = true;
+  for_points_inside(inner, columns, step.z(), [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+    const double height = (static_cast<double>(k) + 0.5) * step.z();
+    const auto found = around.find({i, j});
+    any = true;
+    all =
+        found != around.end() &&
+        std::count_if(found->second.begin(), found->second.end(), [height](double z) { return z <= height; }) % 2 == 1;
+    return all;
+  });
+  return any && all;
+}
+
 bool covers_a_cell(const Case& c, const SolidCase& solid) {
   const Index3 cells = cells_of(c.domain);
   const std::array<bool, 3> periodic = periodic_axes(c.domain);

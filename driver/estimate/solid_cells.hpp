@@ -41,6 +41,9 @@ private:
   std::vector<bool> covered_;
 };
 
+// True if every point of a grid that lies in the inner solid lies in the outer one, too, and there is one.
+bool lies_within(const Case& c, const SolidCase& inner, const SolidCase& outer);
+
 // True if the solid covers the centre of a cell of the box.
 bool covers_a_cell(const Case& c, const SolidCase& solid);
 

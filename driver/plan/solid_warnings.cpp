@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace thalweg::driver {
 
@@ -121,6 +122,26 @@ std::vector<std::string> thin_solids(const Case& c) {
   return found;
 }
 
+// Of two that cover the same, the later one. What moves may come out.
+std::vector<std::string> hidden_solids(const Case& c) {
+  std::vector<std::string> found;
+  const auto hides = [&](std::size_t outer, std::size_t inner) {
+    const SolidCase &around = c.solids[outer], &solid = c.solids[inner];
+    return outer != inner && !around.motion && !solid.motion && !is_misplaced(c, around) && !is_misplaced(c, solid) &&
+           lies_within(c, solid, around);
+  };
+  for (std::size_t n = 0; n < c.solids.size(); ++n)
+    for (std::size_t other = 0; other < c.solids.size(); ++other) {
+      if (!hides(other, n) || (other > n && hides(n, other))) continue;
+      found.push_back(
+          fmt::format("The solid solids.{} lies within solids.{}, where neither fluid nor grains meet it: "
+                      "remove it, or consider {}.",
+                      n, other, other_place(c, n)));
+      break;
+    }
+  return found;
+}
+
 // Sentence on what solids leave to the flow; empty: enough.
 std::string closed_channel(const Case& c) {
   const auto blocks = [&](const SolidCase& solid) { return !solid.motion && !is_misplaced(c, solid); };
@@ -144,6 +165,7 @@ std::string closed_channel(const Case& c) {
 std::vector<std::string> solids_in_the_lattice(const Case& c) {
   if (!has_fluid(c) || c.solids.empty()) return {};
   std::vector<std::string> found = thin_solids(c);
+  for (std::string& sentence : hidden_solids(c)) found.push_back(std::move(sentence));
   if (const std::string closed = closed_channel(c); !closed.empty()) found.insert(found.begin(), closed);
   return found;
 }

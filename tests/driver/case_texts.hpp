@@ -1,4 +1,4 @@
-// The example case of the tests of the reader, and how they read one.
+// Cases of several tests, and how they read one.
 #pragma once
 
 #include "driver/input/case_reader.hpp"
@@ -36,6 +36,17 @@ output:
   checkpoint: {every: 1.0, keep: 3}
 analysis:
   transport_rate: {from: 1.0}
+)";
+
+// 40 x 20 x 20 cells of clear water between side walls.
+inline const std::string channel = R"(system: fluid
+domain:
+  size: [0.04, 0.02, 0.02]
+  spacing: 1.0e-3
+  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6}
+gravity: {magnitude: 9.81, slope: 0.001}
+run: {until: 100}
 )";
 
 inline driver::Case read_text(const std::string& yaml, const std::vector<std::string>& overrides = {}) {

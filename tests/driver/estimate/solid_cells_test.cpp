@@ -9,15 +9,7 @@ namespace {
 
 // A box of 40 x 20 x 20 cells of 1 mm with a round stone at x = 30 mm, half-way between the walls.
 Case with_stone(double height, double radius) {
-  Case c = testing::read_text(R"(system: fluid
-domain:
-  size: [0.04, 0.02, 0.02]
-  spacing: 1.0e-3
-  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-6}
-gravity: {magnitude: 9.81, slope: 0.001}
-run: {until: 1}
-)");
+  Case c = testing::read_text(testing::channel);
   SolidCase stone;
   stone.sphere = SphereCase{Vec3(0.030, 0.010, height), radius};
   c.solids = {stone};

@@ -10,15 +10,7 @@
 namespace thalweg::driver::boundary_warnings_test {
 namespace {
 
-const std::string channel = R"(system: fluid
-domain:
-  size: [0.04, 0.02, 0.02]
-  spacing: 1.0e-3
-  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-6}
-gravity: {magnitude: 9.81, slope: 0.001}
-run: {until: 100}
-)";
+using testing::channel;
 
 Case with_ends(const std::string& low, const std::string& high) {
   return testing::read_text(channel, {"domain.boundaries={x_low: " + low + ", x_high: " + high +

@@ -7,16 +7,7 @@
 namespace thalweg::driver::solid_warnings_test {
 namespace {
 
-// 40 x 20 x 20 cells of clear water between side walls.
-const std::string channel = R"(system: fluid
-domain:
-  size: [0.04, 0.02, 0.02]
-  spacing: 1.0e-3
-  boundaries: {x: periodic, y: no_slip, bottom: no_slip, top: free_slip}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-6}
-gravity: {magnitude: 9.81, slope: 0.001}
-run: {until: 1}
-)";
+using testing::channel;
 
 // Fifty grains in the lower half of the same box.
 const std::string bed = R"(system: resolved
@@ -99,6 +90,40 @@ TEST(SolidWarnings, OfASolidBetweenTheCentresOfCells) {
   const std::string thin = said(channel, {box({0.01, 0.005, -0.01}, {0.02, 0.015, 0.0004})});
   EXPECT_TRUE(contains(thin, "The solid solids.0 covers the centre of no cell of 0.001 m")) << thin;
   EXPECT_EQ(said(channel, {box({0.01, 0.005, -0.01}, {0.02, 0.015, 0.0006})}), "");
+}
+
+TEST(SolidWarnings, OfASolidWithinAnother) {
+  const SolidCase block = box({0.01, 0.005, -0.001}, {0.03, 0.015, 0.010}),
+                  core = box({0.015, 0.008, -0.001}, {0.025, 0.012, 0.005}),
+                  spike = box({0.015, 0.008, -0.001}, {0.025, 0.012, 0.012});
+  EXPECT_EQ(said(channel, {core, block}),
+            "The solid solids.0 lies within solids.1, where neither fluid nor grains meet it: remove it, or consider "
+            "another solids.0.translate in m or solids.0.scale.\n");
+  EXPECT_EQ(said(channel, {block, spike}), "");  // its head is outside
+  SolidCase moving = core;
+  moving.motion.emplace();
+  EXPECT_EQ(said(channel, {block, moving}), "");
+}
+
+TEST(SolidWarnings, OfOneSolidTwice) {
+  const SolidCase block = box({0.01, 0.005, -0.001}, {0.03, 0.015, 0.010});
+  const std::string twice = said(channel, {block, block});
+  EXPECT_TRUE(contains(twice, "solids.1 lies within solids.0")) << twice;
+  EXPECT_FALSE(contains(twice, "solids.0 lies within")) << twice;
+}
+
+// A sphere in the notch of a block: its box lies within that of the block.
+TEST(SolidWarnings, OfNoSolidInTheNotchOfAnother) {
+  SolidCase left = box({0.01, 0.005, -0.001}, {0.015, 0.015, 0.012}), sphere;
+  const SolidCase right = box({0.025, 0.005, -0.001}, {0.030, 0.015, 0.012});
+  const int points = static_cast<int>(left.surface.points.size());
+  for (auto triangle : right.surface.triangles) {
+    for (auto& corner : triangle) corner += points;
+    left.surface.triangles.push_back(triangle);
+  }
+  left.surface.points.insert(left.surface.points.end(), right.surface.points.begin(), right.surface.points.end());
+  sphere.sphere = SphereCase{{0.02, 0.01, 0.006}, 0.003};
+  EXPECT_EQ(said(channel, {left, sphere}), "");
 }
 
 TEST(SolidWarnings, OfAPlateOverAllOfTheBed) {
