@@ -81,8 +81,10 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
   run->add_option("CASE.yaml", command.path, "The case")->required();
   run->add_option("--out", command.out, "Run folder to write (default: the folder run beside the case file)");
   run->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
-  run->add_option("--restart", command.restart,
-                  "Resume from a checkpoint file, or from the latest checkpoint of a run folder");
+  run->add_option(
+      "--restart", command.restart,
+      "Resume from this checkpoint file, or from the latest of this run folder, where --resume takes the latest of "
+      "--out");
   run->add_option("--until", command.until, "Simulated time to stop at in s, instead of the case's run.until");
   run->add_option("--walltime", texts.walltime, "Save the state and stop before this much wall time has passed")
       ->type_name("HH:MM:SS");
@@ -90,8 +92,8 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
   run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
   run->add_flag(
          "--resume", command.resume,
-         "Start the run, or resume it from its latest checkpoint, whichever the run folder requires; leave a finished "
-         "run as it is (for job scripts)")
+         "Resume from the latest checkpoint of --out, or start where there is none; leave a finished run as it is (for "
+         "job scripts)")
       ->excludes("--restart")
       ->excludes("--overwrite");
   run->final_callback([&] { command.kind = Command::Kind::run; });
