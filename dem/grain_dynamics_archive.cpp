@@ -9,6 +9,7 @@
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/row_range.hpp"
+#include "core/state/whole_dataset.hpp"
 #include "dem/contact/contact_archive.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/grain_space.hpp"
@@ -202,6 +203,8 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   if (!as_start) assemblies_.load(archive, group);
   turnover_.set_first_id(global_count_);
   if (!as_start) load_turnover(archive, group);
+  if (!archive.has(group + "/id") && id_limit() != global_count_)  // as save() has it
+    throw damaged_dataset(group + "/id", "the file has no such data, but grains have come in or left");
   check_prescribed_speed();
   if (walls_change_) place_walls(time(), time());
   if (solids_change_) place_solids(time(), time());

@@ -161,6 +161,40 @@ void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& gro
   write_whole(archive, communicator_, returning + "/sink", sink);
 }
 
+namespace {
+
+// The bodies that were on their way back, as save_turnover() writes them.
+std::vector<ReturningBody> load_returning(ArchiveReader& archive, const std::string& group) {
+  if (!has_all_or_none(archive, {group + "/radius", group + "/due", group + "/sink"})) return {};
+  const auto count_of = [&](const char* name) { return static_cast<std::int64_t>(archive.shape(group + name).at(0)); };
+  const auto bodies = static_cast<std::size_t>(count_of("/due"));
+  const auto due = read_whole<double>(archive, group + "/due", {bodies});
+  const auto sink = read_whole<std::int64_t>(archive, group + "/sink", {bodies});
+  const GrainBatch batch = read_grains(archive, group, RowRange(count_of("/radius"), 1, 0), 0);
+  std::vector<ClumpRow> clumps;
+  if (archive.has(group + "/clump_id")) clumps = read_clumps(archive, group, RowRange(count_of("/clump_id"), 1, 0));
+  std::vector<ReturningBody> returning;
+  for (const GrainRow& row : batch.rows) {
+    if (row.clump < 0 || row.id == row.clump) {
+      const std::size_t n = returning.size();
+      if (n == bodies) throw damaged_dataset(group + "/due", fmt::format("the file holds {} of more grains", bodies));
+      returning.push_back({{}, static_cast<std::size_t>(sink[n]), due[n]});
+      const auto clump = std::find_if(clumps.begin(), clumps.end(), [&](const ClumpRow& c) { return c.id == row.id; });
+      if (row.clump >= 0 && clump == clumps.end())
+        throw damaged_dataset(group + "/clump_id", fmt::format("the file holds no clump {}", row.clump));
+      if (row.clump >= 0) returning.back().body.clump = *clump;
+    }
+    if (returning.empty())
+      throw damaged_dataset(group + "/radius", fmt::format("clump {} begins with its second sphere", row.clump));
+    returning.back().body.rows.push_back(row);
+  }
+  if (returning.size() < bodies)
+    throw damaged_dataset(group + "/radius", fmt::format("the file holds {} of {} grains", returning.size(), bodies));
+  return returning;
+}
+
+}  // namespace
+
 void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& group) {
   if (!turnover_.any() || !archive.has(group + "/first_supplied_id")) return;
   turnover_.set_first_id(archive.integer_attribute(group + "/first_supplied_id"));
@@ -172,29 +206,7 @@ void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& gro
       (*tallies)[n].bodies = archive.integer_attribute(fmt::format("{}/{}_{}_bodies", group, name, n));
       (*tallies)[n].mass = archive.real_attribute(fmt::format("{}/{}_{}_mass", group, name, n));
     }
-  state.returning.clear();
-  const std::string returning = group + "/returning";
-  if (archive.has(returning + "/due")) {
-    const auto due = read_whole<double>(archive, returning + "/due");
-    const auto sink = read_whole<std::int64_t>(archive, returning + "/sink");
-    const auto count_of = [&](const char* name) {
-      return static_cast<std::int64_t>(archive.shape(returning + name)[0]);
-    };
-    const GrainBatch batch = read_grains(archive, returning, RowRange(count_of("/radius"), 1, 0), 0);
-    std::vector<ClumpRow> clumps;
-    if (archive.has(returning + "/clump_id"))
-      clumps = read_clumps(archive, returning, RowRange(count_of("/clump_id"), 1, 0));
-    for (const GrainRow& row : batch.rows) {
-      if (row.clump < 0 || row.id == row.clump) {
-        const std::size_t n = state.returning.size();
-        state.returning.push_back({{}, static_cast<std::size_t>(sink.at(n)), due.at(n)});
-        const auto clump =
-            std::find_if(clumps.begin(), clumps.end(), [&](const ClumpRow& c) { return c.id == row.id; });
-        if (row.clump >= 0) state.returning.back().body.clump = *clump;
-      }
-      state.returning.back().body.rows.push_back(row);
-    }
-  }
+  state.returning = load_returning(archive, group + "/returning");
   turnover_.set_state(std::move(state));
 }
 

@@ -1,5 +1,7 @@
 #include "analysis/observer/mean_observer.hpp"
 
+#include "core/state/whole_dataset.hpp"
+
 namespace thalweg::analysis {
 
 void MeanObserver::observe(const Snapshot& snapshot) {
@@ -18,8 +20,9 @@ void MeanObserver::save(ArchiveWriter& archive) const {
 }
 
 bool MeanObserver::load(ArchiveReader& archive) {
-  if (!archive.has(name_ + "/mean_from") || archive.real_attribute(name_ + "/mean_from") != from_ ||
-      !were_saved_with(archive, name_, settings()) || !load_sums(archive, name_))
+  if (!has_all_or_none(archive, {name_ + "/mean_from", name_ + "/sums"}) ||
+      archive.real_attribute(name_ + "/mean_from") != from_ || !were_saved_with(archive, name_, settings()) ||
+      !load_sums(archive, name_))
     return false;
   counted_step_ = archive.integer_attribute(name_ + "/counted_step");
   return true;

@@ -41,8 +41,8 @@ protected:
   // Adds the measurement to the sums.
   virtual void add(const Snapshot& snapshot) = 0;
 
-  // The sums in a group of the archive. load_sums() leaves them as they are and returns false if those saved do not
-  // fit.
+  // The sums in a group of the archive, in a dataset "sums" and perhaps others. load_sums() leaves them as they are and
+  // returns false if those saved were measured with other settings, and throws DamagedFile if they are damaged.
   virtual void save_sums(ArchiveWriter& archive, const std::string& group) const = 0;
   virtual bool load_sums(ArchiveReader& archive, const std::string& group) = 0;
   virtual SavedSettings settings() const { return {}; }

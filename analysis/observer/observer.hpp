@@ -52,7 +52,9 @@ public:
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;
-  virtual bool load(ArchiveReader& archive) = 0;  // false: the archive holds none that fit, and they begin here
+  // False: the archive holds none, or those of other settings, and they begin here. Throws DamagedFile if the archive
+  // holds some that nothing can be made of.
+  virtual bool load(ArchiveReader& archive) = 0;
 };
 
 }  // namespace thalweg::analysis

@@ -4,6 +4,8 @@
 #include "core/geometry/hydraulic_radius.hpp"
 #include "core/state/whole_dataset.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -150,12 +152,14 @@ void BedSurface::save(ArchiveWriter& archive) const {
 }
 
 bool BedSurface::load(ArchiveReader& archive) {
-  if (!archive.has("bed_surface/mean_from") || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
-      archive.shape("bed_surface/sums") != std::vector<std::uint64_t>{sums_.size()} ||
-      !archive.has("bed_surface/surface_counts") ||
-      archive.shape("bed_surface/surface_counts") != std::vector<std::uint64_t>{surface_counts_.size()})
+  if (!has_all_or_none(archive, {"bed_surface/mean_from", "bed_surface/sums"}) ||
+      !archive.has("bed_surface/surface_counts"))  // older checkpoints have none
     return false;
-  if (!were_saved_with(archive, "bed_surface", settings())) return false;
+  auto sums = read_whole_if_alike<double>(archive, "bed_surface/sums", {sums_.size()});
+  auto counts = read_whole_if_alike<double>(archive, "bed_surface/surface_counts", {surface_counts_.size()});
+  if (!sums || !counts || archive.real_attribute("bed_surface/mean_from") != keys_.from ||
+      !were_saved_with(archive, "bed_surface", settings()))
+    return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
   measurements_ = archive.integer_attribute("bed_surface/measurements");
   pictures_ = archive.integer_attribute("bed_surface/pictures");
@@ -163,10 +167,11 @@ bool BedSurface::load(ArchiveReader& archive) {
   bulk_ = archive.real_attribute("bed_surface/latest_bulk");
   if (archive.has("bed_surface/latest_bed_stress"))  // older checkpoints have none
     bed_stress_ = archive.real_attribute("bed_surface/latest_bed_stress");
-  sums_ = read_whole<double>(archive, "bed_surface/sums");
-  surface_sums_ = read_whole<double>(archive, "bed_surface/surface_sums");
-  surface_counts_ = read_whole<double>(archive, "bed_surface/surface_counts");
-  pixels_.load(archive, "bed_surface");
+  sums_ = std::move(*sums);
+  surface_counts_ = std::move(*counts);
+  surface_sums_ = read_whole<double>(archive, "bed_surface/surface_sums", {surface_counts_.size()});
+  if (pixels_.load(archive, "bed_surface") && pictures_ > 0 && pixels_.surface().empty())
+    throw damaged_dataset("bed_surface/surface", fmt::format("the file has no such data, but {} pictures", pictures_));
   return true;
 }
 

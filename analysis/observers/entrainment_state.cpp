@@ -80,8 +80,8 @@ void Entrainment::save(ArchiveWriter& archive) const {
 }
 
 bool Entrainment::load(ArchiveReader& archive) {
-  if (!archive.has("entrainment/seen_step")) return false;
-  if (!archive.has("entrainment/grains")) return true;  // before the first measurement
+  if (!archive.has("entrainment/seen_step") && !archive.has("entrainment/grains")) return false;
+  if (archive.integer_attribute("entrainment/seen_step") < 0) return true;  // before the first measurement
   if (!were_saved_with(archive, "entrainment", definitions())) return false;
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
   memory_.assign(homes_->size(), {});

@@ -123,10 +123,10 @@ void FluidStatistics::save_sums(ArchiveWriter& archive, const std::string& group
 }
 
 bool FluidStatistics::load_sums(ArchiveReader& archive, const std::string& group) {
-  if (archive.shape(group + "/sums") != shape()) return false;
+  const auto values = read_whole_if_alike<std::int64_t>(archive, group + "/sums", shape());
+  if (!values) return false;
   load_count(archive, group);
-  const auto values = read_whole<std::int64_t>(archive, group + "/sums");
-  for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {values[2 * s], values[2 * s + 1]};
+  for (std::size_t s = 0; s < sums_.size(); ++s) sums_[s] = {(*values)[2 * s], (*values)[2 * s + 1]};
   return true;
 }
 

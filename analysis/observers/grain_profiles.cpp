@@ -207,11 +207,11 @@ void GrainProfiles::save_sums(ArchiveWriter& archive, const std::string& group) 
 }
 
 bool GrainProfiles::load_sums(ArchiveReader& archive, const std::string& group) {
-  if (archive.shape(group + "/sums") != shape()) return false;
-  if (!axes_.empty() && (!archive.has(group + "/axes") || archive.shape(group + "/axes") != axes_shape())) return false;
+  auto sums = read_whole_if_alike<double>(archive, group + "/sums", shape());
+  if (!sums || (!axes_.empty() && !archive.has(group + "/axes"))) return false;  // older checkpoints have no axes
+  if (!axes_.empty()) axes_ = read_whole<double>(archive, group + "/axes", axes_shape());
   load_count(archive, group);
-  sums_ = read_whole<double>(archive, group + "/sums");
-  if (!axes_.empty()) axes_ = read_whole<double>(archive, group + "/axes");
+  sums_ = std::move(*sums);
   return true;
 }
 

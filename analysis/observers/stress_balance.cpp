@@ -188,12 +188,10 @@ void StressBalance::save_sums(ArchiveWriter& archive, const std::string& group) 
 }
 
 bool StressBalance::load_sums(ArchiveReader& archive, const std::string& group) {
-  if (archive.integer_attribute(group + "/layers") != layers_.count() ||
-      archive.shape(group + "/sums") != std::vector<std::uint64_t>{stored_size()})
-    return false;
+  const auto all = read_whole_if_alike<double>(archive, group + "/sums", {stored_size()});
+  if (!all || archive.integer_attribute(group + "/layers") != layers_.count()) return false;
   load_count(archive, group);
-  const auto all = read_whole<double>(archive, group + "/sums");
-  auto next = all.begin();
+  auto next = all->begin();
   for (const auto sums : stored) {
     std::copy_n(next, (this->*sums).size(), (this->*sums).begin());
     next += static_cast<std::ptrdiff_t>((this->*sums).size());

@@ -115,18 +115,20 @@ void Tracks::save(ArchiveWriter& archive) const {
 }
 
 bool Tracks::load(ArchiveReader& archive) {
-  if (!archive.has("tracks/id") || archive.shape("tracks/id").at(0) != grains_.size()) return false;
-  if (read_whole<std::int64_t>(archive, "tracks/id") != grains_) return false;
+  if (!has_all_or_none(archive, {"tracks/seen_step", "tracks/id", "tracks/last"}) ||
+      read_whole_if_alike<std::int64_t>(archive, "tracks/id", {grains_.size()}) != grains_)
+    return false;
   seen_step_ = archive.integer_attribute("tracks/seen_step");
   measurements_ = archive.integer_attribute("tracks/measurements");
   last_time_ = archive.real_attribute("tracks/last_time");
-  const std::vector<std::uint64_t> shape = archive.shape("tracks/last");
-  const auto values = read_whole<double>(archive, "tracks/last");
+  constexpr std::size_t columns = std::tuple_size_v<decltype(GrainRecord::values)>;
+  const std::size_t rows = measurements_ > 0 ? grains_.size() : 0;
+  const auto values = read_whole<double>(archive, "tracks/last", {rows, columns});
   if (rank_of(communicator_) != 0) return true;
-  last_.assign(shape.at(0), {});
+  last_.assign(rows, {});
   for (std::size_t n = 0; n < last_.size(); ++n) {
     last_[n].id = grains_[n];
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * shape[1]), shape[1], last_[n].values.begin());
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * columns), columns, last_[n].values.begin());
   }
   return true;
 }

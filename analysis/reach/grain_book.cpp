@@ -1,7 +1,7 @@
 #include "analysis/reach/grain_book.hpp"
 
-#include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -109,11 +109,14 @@ void GrainBook::save(ArchiveWriter& archive, const std::string& group) const {
   homes_->write(archive, group + "/grains", std::move(rows), columns);
 }
 
-void GrainBook::load(ArchiveReader& archive, const std::string& group) {
+void GrainBook::load(ArchiveReader& archive, const std::string& group, std::int64_t bodies) {
   last_time_ = archive.real_attribute(group + "/looked_last");
   last_speed_ = archive.real_attribute(group + "/largest_speed");
   if (!archive.has(group + "/grains")) return;
   homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/grains").at(0)));
+  if (homes_->count() < bodies)
+    throw damaged_dataset(group + "/grains",
+                          fmt::format("the file holds {} grains, but {} were there", homes_->count(), bodies));
   memory_.assign(homes_->size(), {});
   const auto rows = homes_->read<double>(archive, group + "/grains", columns);
   bool damaged = false;
@@ -128,10 +131,7 @@ void GrainBook::load(ArchiveReader& archive, const std::string& group) {
                   row[8]};
   }
   if (any_rank(communicator_, damaged))
-    throw InputError(
-        fmt::format("The book of the grains in {}/grains of the checkpoint is damaged; restart from an "
-                    "earlier checkpoint or without analysis.{}.",
-                    group, group));
+    throw damaged_dataset(group + "/grains", "the file holds values that no grain has");
 }
 
 }  // namespace thalweg::analysis

@@ -58,7 +58,8 @@ public:
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective
   // Where there was no look yet, it begins here. Throws InputError where the book is damaged. Collective.
-  void load(ArchiveReader& archive, const std::string& group);
+  // bodies: in the box at the latest look. Throws DamagedFile if fewer are remembered. Collective.
+  void load(ArchiveReader& archive, const std::string& group, std::int64_t bodies);
 
 private:
   enum State { absent = 0, at_rest = 1, moving = 2 };

@@ -90,7 +90,7 @@ public:
   Records take_records() override;
 
   void save(ArchiveWriter& archive) const override;
-  // Takes the state over only if it has the same settings. Throws InputError where it is damaged.
+  // Takes the state over only if it has the same settings. Throws DamagedFile.
   bool load(ArchiveReader& archive) override;
 
 private:

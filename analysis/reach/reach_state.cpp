@@ -1,10 +1,7 @@
 // State of Reach in a checkpoint.
 #include "analysis/reach/reach.hpp"
-#include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/whole_dataset.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -26,21 +23,6 @@ template <typename Number>
 void take(std::span<const Number>& rest, std::vector<Number>& some) {
   std::copy_n(rest.begin(), some.size(), some.begin());
   rest = rest.subspan(some.size());
-}
-
-// A dataset of a known number of values. Throws InputError where it has another.
-template <typename Number>
-std::vector<Number> read_all(ArchiveReader& archive, const std::string& name, std::size_t count) {
-  std::vector<Number> values(count);
-  archive.read(group + "/" + name, std::span<Number>(values), {{count}, {0}, {count}});
-  return values;
-}
-
-[[noreturn]] void refuse(const char* what) {
-  throw InputError(
-      fmt::format("The checkpoint has {} in its group {}; restart from an earlier checkpoint or without "
-                  "analysis.{}.",
-                  what, group, group));
 }
 
 }  // namespace
@@ -76,16 +58,18 @@ void Reach::save(ArchiveWriter& archive) const {
 }
 
 bool Reach::load(ArchiveReader& archive) {
-  if (!archive.has(group + "/seen_step") || !were_saved_with(archive, group, settings())) return false;
+  if (!has_all_or_none(archive, {group + "/seen_step", group + "/grain_sums"}) ||
+      !were_saved_with(archive, group, settings()))
+    return false;
   const std::size_t bins = sections_.size(), passages = 3 * passage_kinds * bins;
-  const auto grains = read_all<std::int64_t>(archive, "grain_sums", passages + 2 * bins);
-  const auto volumes = read_all<double>(archive, "volume_sums", passages + 3 * bins);
-  const auto lengths = read_all<std::int64_t>(archive, "batch_lengths", 2 + 2 * bins);
+  const auto grains = read_whole<std::int64_t>(archive, group + "/grain_sums", {passages + 2 * bins});
+  const auto volumes = read_whole<double>(archive, group + "/volume_sums", {passages + 3 * bins});
+  const auto lengths = read_whole<std::int64_t>(archive, group + "/batch_lengths", {2 + 2 * bins});
   const auto batches = read_whole<double>(archive, group + "/batches");
   const auto whole = static_cast<std::int64_t>(batches.size());
   const bool fit = std::all_of(lengths.begin(), lengths.end(), [](std::int64_t n) { return n >= 6; });
   if (!fit || std::accumulate(lengths.begin(), lengths.end(), std::int64_t{0}) != whole)
-    refuse("means whose lengths do not fit");
+    throw damaged_dataset(group + "/batches", "the lengths of the means do not fit");
 
   seen_step_ = archive.integer_attribute(group + "/seen_step");
   window_begun_ = archive.real_attribute(group + "/window_begun");
@@ -98,14 +82,16 @@ bool Reach::load(ArchiveReader& archive) {
   auto length = lengths.begin();
   for (CorrelatedMean* mean : means_of(*this)) {
     const auto size = static_cast<std::size_t>(*length++);
-    mean->restore(batches_left.first(size));
+    if (!mean->restore(batches_left.first(size)))
+      throw damaged_dataset(group + "/batches", "the batches of a mean are not those of its values");
     batches_left = batches_left.subspan(size);
   }
   if (seen_step_ >= 0 && !(archive.has(group + "/grains") && archive.has(group + "/pixels_of_grains")))
-    refuse("no memory of the grains");
+    throw damaged_dataset(group + "/grains", "the file has no memory of the grains");
   residence_.load(archive, group);
-  book_.load(archive, group);
-  pixels_.load(archive, group);
+  book_.load(archive, group, std::accumulate(here_.begin(), here_.end(), std::int64_t{0}));
+  if (pixels_.load(archive, group) && mean_level_.count() > 0 && pixels_.surface().empty())
+    throw damaged_dataset(group + "/surface", "the file has no such data, but records");
   return true;
 }
 

@@ -78,8 +78,7 @@ void Residence::save(ArchiveWriter& archive, const std::string& group) const {
 }
 
 void Residence::load(ArchiveReader& archive, const std::string& group) {
-  std::vector<std::int64_t> counts(stays_.counts().size());
-  archive.read(group + "/stays", std::span<std::int64_t>(counts), {{counts.size()}, {0}, {counts.size()}});
+  const auto counts = read_whole<std::int64_t>(archive, group + "/stays", {stays_.counts().size()});
   std::copy(counts.begin(), counts.end(), stays_.counts().begin());
   sum_of_stays_ = archive.real_attribute(group + "/sum_of_stays");
   newcomers_ = archive.integer_attribute(group + "/newcomers");

@@ -278,23 +278,22 @@ void FractionalTransport::save_sums(ArchiveWriter& archive, const std::string& g
   write_whole(archive, communicator(), group + "/sums", sums);
   std::size_t n = 0;
   for (const CorrelatedMean* mean : means_of(*this))
-    write_whole(archive, communicator(), fmt::format("{}/batches_{}", group, n++), mean->state());
+    mean->save(archive, communicator(), fmt::format("{}/batches_{}", group, n++));
 }
 
 bool FractionalTransport::load_sums(ArchiveReader& archive, const std::string& group) {
   std::uint64_t size = 0;
   for (const std::vector<double>* some : sums_of(*this)) size += some->size();
-  if (!archive.has(group + "/sums") || archive.shape(group + "/sums") != std::vector<std::uint64_t>{size}) return false;
+  const auto sums = read_whole_if_alike<double>(archive, group + "/sums", {size});
+  if (!sums) return false;
   load_count(archive, group);
-  const auto sums = read_whole<double>(archive, group + "/sums");
-  auto next = sums.begin();
+  auto next = sums->begin();
   for (std::vector<double>* some : sums_of(*this)) {
     std::copy_n(next, some->size(), some->begin());
     next += static_cast<std::ptrdiff_t>(some->size());
   }
   std::size_t n = 0;
-  for (CorrelatedMean* mean : means_of(*this))
-    mean->restore(read_whole<double>(archive, fmt::format("{}/batches_{}", group, n++)));
+  for (CorrelatedMean* mean : means_of(*this)) mean->load(archive, fmt::format("{}/batches_{}", group, n++));
   return true;
 }
 

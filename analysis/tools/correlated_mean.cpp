@@ -1,6 +1,7 @@
 #include "analysis/tools/correlated_mean.hpp"
 
 #include "analysis/tools/long_run_variance.hpp"
+#include "core/state/whole_dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -57,9 +58,17 @@ std::vector<double> CorrelatedMean::state() const {
   return state;
 }
 
-void CorrelatedMean::restore(std::span<const double> state) {
-  *this = {};
-  if (state.size() < 6) return;
+void CorrelatedMean::save(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path) const {
+  write_whole(archive, communicator, path, state());
+}
+
+void CorrelatedMean::load(ArchiveReader& archive, const std::string& path) {
+  if (!restore(read_whole<double>(archive, path)))
+    throw damaged_dataset(path, "the batches of a mean are not those of its values");
+}
+
+bool CorrelatedMean::restore(std::span<const double> state) {
+  if (state.size() < 6) return false;
   count_ = state[0];
   mean_ = state[1];
   squares_ = state[2];
@@ -67,6 +76,7 @@ void CorrelatedMean::restore(std::span<const double> state) {
   begun_ = state[4];
   sum_of_begun_ = state[5];
   batches_.assign(state.begin() + 6, state.end());
+  return static_cast<double>(batches_.size()) * length_ + begun_ == count_;
 }
 
 }  // namespace thalweg::analysis

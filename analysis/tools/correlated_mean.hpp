@@ -8,6 +8,10 @@
 // With s the standard deviation of the values, the series is worth (s/error)^2 + 1 independent values, at most n.
 #pragma once
 
+#include "core/base/archive.hpp"
+
+#include <mpi.h>
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,9 +41,12 @@ public:
   std::span<const double> batches() const { return batches_; }  // means of the complete ones
   double round_off() const;  // by which batches that should be alike may differ, in their unit
 
-  // State for a checkpoint.
+  // The state is one dataset of a checkpoint; load() throws DamagedFile if its batches are not those of its values.
+  // Collective.
+  void save(ArchiveWriter& archive, MPI_Comm communicator, const std::string& path) const;
+  void load(ArchiveReader& archive, const std::string& path);
   std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  [[nodiscard]] bool restore(std::span<const double> state);  // false: its batches are not those of its values
 
   static constexpr std::size_t most_batches = 1024;
 

@@ -4,6 +4,8 @@
 #include "core/state/whole_dataset.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -136,19 +138,23 @@ void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   homes_->write(archive, group + "/hops_of_grains", std::move(rows), columns);
 }
 
-void Hops::load(ArchiveReader& archive, const std::string& group) {
+void Hops::load(ArchiveReader& archive, const std::string& group, std::int64_t bodies) {
   const std::size_t cells = lengths_.counts().size();
-  const std::vector<std::uint64_t> shape{2 * cells};
-  if (!archive.has(group + "/hops_of_grains") || archive.shape(group + "/hops_counts") != shape) return;
+  const std::string grains = group + "/hops_of_grains";
+  if (!archive.has(group + "/hops_last_time") && !archive.has(grains)) return;
+  const auto counts = read_whole_if_alike<std::int64_t>(archive, group + "/hops_counts", {2 * cells});
+  if (!counts || (bodies == 0 && !archive.has(grains))) return;
   last_time_ = archive.real_attribute(group + "/hops_last_time");
   sum_of_lengths_ = archive.real_attribute(group + "/hops_sum_of_lengths");
   sum_of_times_ = archive.real_attribute(group + "/hops_sum_of_times");
-  const auto counts = read_whole<std::int64_t>(archive, group + "/hops_counts");
-  std::copy(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
-  std::copy(counts.begin() + static_cast<std::ptrdiff_t>(cells), counts.end(), times_.counts().begin());
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/hops_of_grains")[0]));
+  std::copy(counts->begin(), counts->begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
+  std::copy(counts->begin() + static_cast<std::ptrdiff_t>(cells), counts->end(), times_.counts().begin());
+  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(grains).at(0)));
+  if (homes_->count() < bodies)
+    throw damaged_dataset(grains,
+                          fmt::format("the file holds {} grains, but {} were measured", homes_->count(), bodies));
   memory_.assign(homes_->size(), {});
-  const auto rows = homes_->read<double>(archive, group + "/hops_of_grains", columns);
+  const auto rows = homes_->read<double>(archive, grains, columns);
   for (std::size_t m = 0; m < memory_.size(); ++m) {
     const double* row = rows.data() + m * columns;
     memory_[m] = {static_cast<Phase>(static_cast<int>(row[0])), row[1], row[2], row[3], row[4]};

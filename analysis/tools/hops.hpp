@@ -52,7 +52,9 @@ public:
   std::vector<Profile> profiles() const;
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective
-  void load(ArchiveReader& archive, const std::string& group);        // does nothing where there is nothing that fits
+  // Does nothing where an older version has written the archive. bodies: at the latest measurement. Throws DamagedFile
+  // if fewer are remembered. Collective.
+  void load(ArchiveReader& archive, const std::string& group, std::int64_t bodies);
 
 private:
   enum Phase { unseen, at_rest, hopping, hopping_uncounted };

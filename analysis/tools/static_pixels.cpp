@@ -130,15 +130,21 @@ void StaticPixels::save(ArchiveWriter& archive, const std::string& group) const 
   homes_->write(archive, group + "/pixels_of_grains", std::move(values), 1 + 2 * columns);
 }
 
-void StaticPixels::load(ArchiveReader& archive, const std::string& group) {
-  if (!archive.has(group + "/pixels_of_grains") || archive.real_attribute(group + "/pixel") != height_) return;
+bool StaticPixels::load(ArchiveReader& archive, const std::string& group) {
+  const std::string rows = group + "/pixels_of_grains";
+  const auto looked = [&] { return archive.integer_attribute(group + "/columns_a_grain") > 0; };
+  if (!archive.has(rows) && !(archive.has(group + "/pixel") && looked())) return false;
+  if (archive.real_attribute(group + "/pixel") != height_) return false;
   picture_begun_ = archive.real_attribute(group + "/picture_begun");
   begun_ = archive.real_attribute(group + "/looks_begun");
   columns_a_grain_ = archive.integer_attribute(group + "/columns_a_grain");
-  if (archive.has(group + "/surface")) surface_ = read_whole<double>(archive, group + "/surface");
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/pixels_of_grains").at(0)));
+  if (archive.has(group + "/surface"))
+    surface_ = read_whole<double>(archive, group + "/surface", {static_cast<std::uint64_t>(columns_)});
+  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(rows).at(0)));
+  // A grain covers at least two columns, and only where there was no grain at the first look may there be no row.
+  if (homes_->count() == 0 && columns_a_grain_ > 1) throw damaged_dataset(rows, "the file holds no values");
   const auto columns = static_cast<std::size_t>(columns_a_grain_), numbers = 1 + 2 * columns;
-  const auto values = homes_->read<std::int64_t>(archive, group + "/pixels_of_grains", numbers);
+  const auto values = homes_->read<std::int64_t>(archive, rows, numbers);
   first_.resize(homes_->size());
   rows_.resize(homes_->size() * columns);
   for (std::size_t grain = 0; grain < first_.size(); ++grain) {
@@ -148,6 +154,7 @@ void StaticPixels::load(ArchiveReader& archive, const std::string& group) {
       rows_[grain * columns + c] = {static_cast<std::int32_t>(row[1 + 2 * c]),
                                     static_cast<std::int32_t>(row[2 + 2 * c])};
   }
+  return true;
 }
 
 }  // namespace thalweg::analysis

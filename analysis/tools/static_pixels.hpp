@@ -39,7 +39,8 @@ public:
   static bool is_static(double height) { return height > 0.0; }  // one of surface()
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective
-  void load(ArchiveReader& archive, const std::string& group);        // does nothing where there is nothing that fits
+  // False, and nothing done, where there is nothing that fits. Throws DamagedFile. Collective.
+  bool load(ArchiveReader& archive, const std::string& group);
 
 private:
   struct Rows {

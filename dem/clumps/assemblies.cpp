@@ -75,10 +75,11 @@ void Assemblies::load(ArchiveReader& archive, const std::string& group) {
   if (motions_.empty()) return;
   if (!archive.has(group + "/assembly_members"))
     throw InputError("The saved grains have no rigid assemblies, but this case has; the populations must be the same.");
-  const auto numbers = read_whole<std::int64_t>(archive, group + "/assembly_members");
-  const auto places = read_whole<double>(archive, group + "/assembly_places_at_start");
-  if (2 * places.size() != 3 * numbers.size())
-    throw InputError("The saved rigid assemblies have more members than places, or fewer; the file is damaged.");
+  const std::string path = group + "/assembly_members";
+  const std::uint64_t rows = archive.shape(path).at(0);
+  if (rows == 0) throw damaged_dataset(path, "the file holds no values");
+  const auto numbers = read_whole<std::int64_t>(archive, path, {rows, 2});
+  const auto places = read_whole<double>(archive, group + "/assembly_places_at_start", {rows, 3});
   members_.clear();
   for (std::size_t m = 0; 2 * m < numbers.size(); ++m) {
     if (numbers[2 * m + 1] >= static_cast<std::int64_t>(motions_.size()))

@@ -1,5 +1,7 @@
 #include "dem/ranks/grain_archive.hpp"
 
+#include "core/state/whole_dataset.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -88,7 +90,7 @@ GrainBatch read_grains(ArchiveReader& archive, const std::string& group, const R
   }
   batch.attached.resize(rows * attached_width);
   if (attached_width > 0) archive.read(group + "/attached", batch.attached, share.box(attached_width));
-  if (!archive.has(group + "/clump")) return batch;
+  if (!has_all_or_none(archive, {group + "/clump", group + "/clump_id"})) return batch;
   std::vector<std::int64_t> clump(rows);
   archive.read(group + "/clump", clump, share.box());
   archive.read(group + "/offset", vectors, share.box(3));

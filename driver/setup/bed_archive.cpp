@@ -116,7 +116,7 @@ KnownBeds beds_of(std::vector<std::filesystem::path> checkpoints) {
           bed->disk_thickness = c.disks ? c.disks->thickness : 0.0;
         }
         return bed;
-      } catch (const io::DamagedFile&) {  // the run will say so
+      } catch (const DamagedFile&) {  // the run will say so
       }
     }
     return std::nullopt;

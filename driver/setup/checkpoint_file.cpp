@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 
 namespace thalweg::driver {
 
@@ -73,16 +74,19 @@ void refuse_other_case(const ArchiveReader& archive, const Case& c) {
 // Adds the file to errors about its contents; data of a wrong shape mean that it is damaged.
 template <typename Work>
 void about_file(const std::filesystem::path& path, Work&& work) {
+  const auto names_the_file = [&](const InputError& error) {
+    return std::string_view(error.what()).starts_with(path.string());
+  };
   try {
     work();
-  } catch (const io::DamagedFile&) {
-    throw;
+  } catch (const DamagedFile& error) {
+    if (names_the_file(error)) throw;
+    throw DamagedFile(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const InputError& error) {
-    const std::string reason = error.what();
-    if (reason.starts_with(path.string())) throw;
-    throw InputError(fmt::format("{}: {}", path.string(), reason));
+    if (names_the_file(error)) throw;
+    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const std::logic_error&) {  // of a vector or an archive
-    throw io::DamagedFile(fmt::format(
+    throw DamagedFile(fmt::format(
         "{}: some of its data have another shape than belongs to them, the file is damaged; take an earlier "
         "checkpoint.",
         path.string()));
@@ -150,7 +154,7 @@ std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
     try {
       run_history = read_checkpoint_file(communicator, path, c, system, observers);
       return path;
-    } catch (const io::DamagedFile& error) {
+    } catch (const DamagedFile& error) {
       if (path == checkpoints.back()) throw;
       damage.emplace_back(error.what());
     }

@@ -31,7 +31,7 @@ void require_checksums(io::Hdf5Reader& checkpoint);
 std::string kept_case_of(const Case& c);
 
 // The state of a checkpoint into a system and observers built from a case. Throws InputError where they do not fit (in
-// system, cells, time step or one of the kept keys), and io::DamagedFile.
+// system, cells, time step or one of the kept keys), and DamagedFile.
 RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                                 Observers& observers);
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "core/base/archive.hpp"
+#include "core/base/damaged_file.hpp"
 #include "core/base/error.hpp"
 
 #include <mpi.h>
@@ -61,12 +62,6 @@ public:
 private:
   struct File;
   std::unique_ptr<File> file_;
-};
-
-// A file that is no longer what was written: cut short, or with bits changed.
-class DamagedFile : public InputError {
-public:
-  using InputError::InputError;
 };
 
 // Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing, and

@@ -205,7 +205,7 @@ class State(Kind):
         state = {
             name: value for name, value in (results or {}).items() if name.startswith(("grains", "fluid", "system"))
         }
-        said = "count from" in answer.out   # observers whose sums are lost
+        said = "averaging starts at" in answer.out   # observers whose sums are lost
         if said and state and all(self.results[name] == value for name, value in state.items()):
             return ""
         return "other results: " + ", ".join(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/archive.hpp"
+#include "core/base/damaged_file.hpp"
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 
@@ -19,6 +20,7 @@ struct MemoryArchive {
   struct Dataset {
     std::vector<std::uint64_t> shape;
     Values values;
+    bool is_whole = true;  // false: a file would tell by the checksum that some are missing, unless all are
   };
   std::map<std::string, Dataset> datasets;
   std::map<std::string, std::variant<double, std::int64_t, std::string>> attributes;
@@ -96,7 +98,7 @@ private:
     if (arrived.size() != size)
       throw RunError(fmt::format("{}: {} values were written into {}.", path, arrived.size(), size));
     for (const Placed& p : arrived) all[p.where] = p.value;
-    archive_.datasets[path] = {box.global_shape, std::move(all)};
+    archive_.datasets[path] = {box.global_shape, std::move(all), true};
   }
 
   MemoryArchive& archive_;
@@ -137,6 +139,7 @@ private:
     if (d.shape != box.global_shape || !std::holds_alternative<std::vector<T>>(d.values))
       throw InputError("The archive in memory has another shape or type of " + path + ".");
     const auto& all = std::get<std::vector<T>>(d.values);
+    if (!d.is_whole && !all.empty()) throw DamagedFile("The archive in memory has lost values of " + path + ".");
     for_each_value(box, [&](std::size_t local, std::size_t global) { values[local] = all[global]; });
   }
 

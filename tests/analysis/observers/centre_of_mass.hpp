@@ -53,9 +53,9 @@ private:
   }
   bool load_sums(ArchiveReader& archive, const std::string& group) override {
     load_count(archive, group);
-    const auto sums = read_whole<double>(archive, group + "/sums");
-    height_ = sums.at(0);
-    sum_ = sums.at(1);
+    const auto sums = read_whole<double>(archive, group + "/sums", {2});
+    height_ = sums[0];
+    sum_ = sums[1];
     return true;
   }
 

@@ -1,6 +1,8 @@
 #include "analysis/tools/correlated_mean.hpp"
 
+#include "core/base/damaged_file.hpp"
 #include "tests/analysis/made_up_series.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -74,6 +76,20 @@ TEST(CorrelatedMean, CountsABurstAtTheEnd) {
   EXPECT_GT(mean.error().of_mean, mean.deviation() / std::sqrt(183.0));
 }
 
+test::MemoryArchive saved(const CorrelatedMean& mean) {
+  test::MemoryArchive archive;
+  test::MemoryWriter writer(archive, MPI_COMM_WORLD);
+  mean.save(writer, MPI_COMM_WORLD, "mean");
+  return archive;
+}
+
+CorrelatedMean restored(const test::MemoryArchive& archive) {
+  CorrelatedMean mean;
+  test::MemoryReader reader(archive);
+  mean.load(reader, "mean");
+  return mean;
+}
+
 TEST(CorrelatedMean, GoesOnFromItsState) {
   CorrelatedMean whole, first, second;
   MadeUpChain chain(0.5, 1);
@@ -81,10 +97,24 @@ TEST(CorrelatedMean, GoesOnFromItsState) {
     const double value = chain.next();
     whole.add(value);
     (n < 3123 ? first : second).add(value);
-    if (n == 3122) second.restore(first.state());
+    if (n == 3122) second = restored(saved(first));
   }
   EXPECT_EQ(whole.state(), second.state());
   EXPECT_EQ(whole.error().of_mean, second.error().of_mean);
+}
+
+// Whatever number of values is lost.
+TEST(CorrelatedMean, RefusesAStateThatHasLostValues) {
+  CorrelatedMean mean;
+  for (int n = 0; n < 2051; ++n) mean.add(n);
+  test::MemoryArchive archive = saved(mean);
+  EXPECT_EQ(restored(archive).state(), mean.state());
+  auto& state = archive.datasets.at("mean");
+  for (std::uint64_t left = mean.state().size(); left-- > 0;) {
+    std::get<std::vector<double>>(state.values).resize(left);
+    state.shape = {left};
+    EXPECT_THROW(restored(archive), DamagedFile) << left;
+  }
 }
 
 // Three million values, three thousand times what is kept. Their mean is n/2, and the scatter of a line is not

@@ -91,7 +91,7 @@ TEST(Hops, HaveTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
     if (n == 5) half_way = saved(alone, MPI_COMM_SELF);
   }
   test::MemoryReader reader(half_way);
-  restarted.load(reader, "transport_rate");
+  restarted.load(reader, "transport_rate", count);
   for (int n = 5; n < 12; ++n) observe(restarted, world, n, 0);  // 5 is seen again, as a restart does
   const test::MemoryArchive end = saved(alone, MPI_COMM_SELF);
   EXPECT_EQ(test::first_difference(end, saved(shared, world)), "");

@@ -1,0 +1,99 @@
+// Observers on a checkpoint that has lost rows.
+#include "driver/input/run_context.hpp"
+#include "driver/setup/build_system.hpp"
+#include "driver/setup/run_history.hpp"
+#include "tests/driver/case_texts.hpp"
+#include "tests/support/damaged_archive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace thalweg::driver::damaged_means_test {
+namespace {
+
+const MPI_Comm world = MPI_COMM_WORLD;
+
+// Some grains that fall in water, and all that can be measured of them.
+const std::string watched = R"(system: resolved
+domain:
+  size: [0.024, 0.012, 0.016]
+  spacing: 0.8e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 1.0e-4}
+gravity: {magnitude: 9.8, slope: 0.05}
+grains:
+  - {count: 4, diameter: 4.0e-3, density: 2550, placement: {pattern: random, seed: 1}}
+contact: {restitution: 0.9, friction: 0.3}
+run: {until: 1}
+output: {series: {every: 1.0e-4}}
+analysis:
+  fluid_statistics: {every: 1.0e-4}
+  probes: {points: [[0.006, 0.006, 0.012]], every: 1.0e-4}
+  transport_rate: {}
+  fractional_transport: {}
+  reach: {every: 1.0e-4, record_every: 2.0e-4}
+  bed_surface: {every: 1.0e-4, static_time: 2.0e-4}
+  grain_profiles: {every: 1.0e-4}
+  stress_balance: {every: 1.0e-4}
+  population_loads: {}
+  tracks: {grains: [0, 2], every: 1.0e-4}
+  entrainment: {grains: [0, 1]}
+)";
+
+struct Watched {
+  Case c = testing::read_text(watched);
+  Decomposition cuts = decomposition_of(c, choose_layout(c, size_of(world), {}));
+  std::unique_ptr<System> system = build_system(c, world, cuts);
+  Observers observers =
+      make_observers(c.analysis.observers, run_context(c), {world, *system->snapshot().decomposition, 1e-4});
+
+  void run(int steps) {
+    for (int n = 0; n < steps; ++n) {
+      system->record_momentum();
+      system->advance();
+      for (auto& observer : observers) observer->observe(system->snapshot());
+    }
+  }
+  test::MemoryArchive saved(const RunHistory& history) const {
+    test::MemoryArchive archive;
+    test::MemoryWriter writer(archive, world);
+    history.save(writer, observers, c.output.series.every);
+    return archive;
+  }
+};
+
+// A run says which means begin anew (RunHistory::since).
+TEST(DamagedMeans, AreRefusedOrSaidToBeginAnew) {
+  Watched first;
+  first.run(6);
+  const test::MemoryArchive whole = first.saved({});
+  Watched again;
+  for (const test::Loss& loss : test::losses_of(whole)) {
+    RunHistory history;
+    again.observers = make_observers(again.c.analysis.observers, run_context(again.c),
+                                     {world, *again.system->snapshot().decomposition, 1e-4});
+    const bool refused = test::is_refused(loss.left, [&](test::MemoryReader& reader) {
+      history = RunHistory::load(reader, *again.system, again.observers, again.c.output.series.every);
+    });
+    if (refused || !history.since.empty()) continue;
+    EXPECT_EQ(test::first_difference(whole, again.saved({})), "") << loss.what;
+  }
+}
+
+// Nothing that settings could mean is left of a dataset without rows.
+TEST(DamagedMeans, AreRefusedWithoutTheirRows) {
+  Watched first;
+  first.run(6);
+  const test::MemoryArchive whole = first.saved({});
+  EXPECT_GT(whole.datasets.size(), 20u);
+  for (const test::Loss& loss : test::losses_of(whole)) {
+    if (!loss.what.starts_with("the rows")) continue;
+    Observers observers = make_observers(first.c.analysis.observers, run_context(first.c),
+                                         {world, *first.system->snapshot().decomposition, 1e-4});
+    EXPECT_TRUE(test::is_refused(loss.left, [&](test::MemoryReader& reader) {
+      RunHistory::load(reader, *first.system, observers, first.c.output.series.every);
+    })) << loss.what;
+  }
+}
+
+}  // namespace
+}  // namespace thalweg::driver::damaged_means_test
