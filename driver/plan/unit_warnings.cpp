@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,7 @@ constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolv
 constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
 constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
 constexpr double widest_cell = 0.05;      // m
+constexpr double most_cells = 1e11, fewest_cells_across = 10.0;               // 1: of a box in metres
 constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;             // kg/m^3, m^2/s
 constexpr double least_in_centimetres = 900.0, most_in_centimetres = 1000.0;  // m/s^2
 constexpr int density_digits = 6;
@@ -41,6 +43,19 @@ Warnings box_in_millimetres(const Case& c) {
       "domain.spacing: {:g} mm is {:g} m.",
       c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), c.domain.spacing, c.domain.spacing,
       1e-3 * c.domain.spacing)};
+}
+
+// A box in millimetres of cells in metres: more than any machine holds, and enough of them a thousand times smaller.
+Warnings many_cells_in_millimetres(const Case& c) {
+  const Vec3 cells = c.domain.size / c.domain.spacing;
+  if (!has_fluid(c) || !box_in_millimetres(c).empty() || cells.prod() < most_cells ||
+      1e-3 * std::min(cells.x(), cells.y()) < fewest_cells_across)
+    return {};
+  return {fmt::format(
+      "The box of {:g} x {:g} x {:g} m has {:.2g} cells of {:g} m, which looks like millimetres: lengths are in m, and "
+      "domain.size: {:g} mm are {:g} m.",
+      c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), cells.prod(), c.domain.spacing, c.domain.size.x(),
+      1e-3 * c.domain.size.x())};
 }
 
 Warnings gravity_in_centimetres(const Case& c) {
@@ -150,11 +165,14 @@ Warnings friction_in_degrees(const Case& c) {
 
 }  // namespace
 
-bool has_other_lengths(const Case& c) { return !lengths_in_millimetres(c).empty() || !box_in_millimetres(c).empty(); }
+bool has_other_lengths(const Case& c) {
+  return !lengths_in_millimetres(c).empty() || !box_in_millimetres(c).empty() || !many_cells_in_millimetres(c).empty();
+}
 
 std::vector<WarningRule> unit_rules() {
-  return {lengths_in_millimetres, box_in_millimetres, gravity_in_centimetres, densities_in_grams,
-          liquid_in_grams,        slope_in_degrees,   friction_in_degrees,    angles_in_degrees};
+  return {lengths_in_millimetres, box_in_millimetres,  many_cells_in_millimetres,
+          gravity_in_centimetres, densities_in_grams,  liquid_in_grams,
+          slope_in_degrees,       friction_in_degrees, angles_in_degrees};
 }
 
 }  // namespace thalweg::driver

@@ -76,6 +76,17 @@ class Check(ProgramTest):
             self.assertRegex(ran.stderr, r"use at least \d+ such nodes")
         self.assertEqual(files_below(self.folder), ["case.yaml"])
 
+    def test_a_box_in_millimetres_of_cells_in_metres(self):
+        """The grains and cells of a case in m, and its box in mm: 2e11 cells, and no advice to make them coarser."""
+        box = ("--set", "domain.size=[88, 44]")
+        case = Path(__file__).resolve().parents[3] / "cases/graded_bed/case.yaml"
+        self.assertNotIn("looks like millimetres", self.run_well("check", case).stdout)
+        checked = self.thalweg("check", case, *box)
+        self.assertEqual(checked.returncode, 2)
+        warnings = [line for line in checked.stdout.splitlines() if line.startswith("warning")]
+        self.assertEqual(len(warnings), 1, checked.stdout)
+        self.assertIn("looks like millimetres: lengths are in m, and domain.size: 88 mm are 0.088 m.", warnings[0])
+
 
 if __name__ == "__main__":
     program.main()
