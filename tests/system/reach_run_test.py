@@ -97,6 +97,8 @@ class ReachRun(ProgramTest):
         self.assertEqual(found["arrived_grains"], found["left_grains"] - known["returning_grains"][-1])
         self.assertEqual(found["balance_residual"], 0)
         self.assertGreaterEqual(self.records("one")["q_s"][:, 12:].min(), 0.0)   # no jump back counts
+        self.run_well("run", self.case, "--out", self.folder / "alone", *settings, "--set", "analysis={}")
+        self.assert_same_bed("one", "alone")
 
     def test_what_cannot_be_measured_is_refused(self):
         for setting, words in (
