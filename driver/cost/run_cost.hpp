@@ -9,7 +9,7 @@ struct Cost {
   double cells;
   double steps;
   double cell_updates;
-  double grain_steps;   // grains times sub-steps
+  double grain_steps;   // spheres, those of clumps among them, times sub-steps
   double core_seconds;  // one core
 };
 // bandwidth: bytes/s of one core's memory (machine.hpp).

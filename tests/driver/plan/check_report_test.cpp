@@ -7,6 +7,7 @@
 #include "driver/plan/contact_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
 #include "driver/plan/remedy.hpp"
+#include "tests/driver/case_texts.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <fmt/format.h>
@@ -34,6 +35,18 @@ TEST(Cost, CountsCellsAndSteps) {
   const Cost on_faster_memory = cost_of(c, 20e9);
   EXPECT_LT(on_faster_memory.core_seconds, cost.core_seconds);
   EXPECT_GT(on_faster_memory.core_seconds, 0.5 * cost.core_seconds);  // the grains do not get faster
+}
+
+// Contacts are those of spheres: a clump costs as much as it has members.
+TEST(Cost, CountsTheMembersOfClumps) {
+  const std::string shape =
+      "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 1.0}, {position: [0.5, 0, 0], diameter: 1.0}]}";
+  const Case spheres = testing::read_text(testing::flume), clumps = testing::read_text(testing::flume, {shape});
+  const auto spheres_of = [](const Case& c) {
+    const Cost cost = cost_of(c, 10e9);
+    return cost.grain_steps / cost.steps / static_cast<double>(grain_steps(c));
+  };
+  EXPECT_NEAR(spheres_of(clumps) / spheres_of(spheres), (2.0 * 150.0 + 2.0) / (150.0 + 2.0), 0.01);  // two are fixed
 }
 
 // A link takes 10 ns (docs/architecture.md) and up to four times that on other machines, and the sweep half of what
