@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace thalweg::analysis {
 
@@ -20,13 +21,10 @@ bool StaticPixels::look(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   const bool first_look = !homes_;
   if (first_look) {
-    double largest = 0.0;
-    for (const double radius : grains.radius) largest = std::max(largest, radius);
-    largest = max_over_ranks(communicator_, largest);
-    columns_a_grain_ = static_cast<std::int64_t>(std::ceil(2.0 * largest / width_)) + 1;
     homes_.emplace(communicator_, grains.end_of_ids());
     begun_ = snapshot.time;
   }
+  make_room_for(grains);
   homes_->grow(grains.end_of_ids());
   first_.resize(homes_->size());
   rows_.resize(homes_->size() * static_cast<std::size_t>(columns_a_grain_));
@@ -46,6 +44,21 @@ bool StaticPixels::look(const Snapshot& snapshot) {
   if (first_look || complete)
     for (const Disk& disk : disks) begin(disk);
   return complete;
+}
+
+// More columns, where grains have come in that are larger than any before; those before cover nothing in them.
+void StaticPixels::make_room_for(const GrainView& grains) {
+  double largest = 0.0;
+  for (const double radius : grains.radius) largest = std::max(largest, radius);
+  largest = max_over_ranks(communicator_, largest);
+  const auto columns = static_cast<std::int64_t>(std::ceil(2.0 * largest / width_)) + 1;
+  if (columns <= columns_a_grain_) return;
+  std::vector<Rows> wider(first_.size() * static_cast<std::size_t>(columns));
+  for (std::size_t grain = 0; grain < first_.size(); ++grain)
+    std::copy_n(rows_.begin() + static_cast<std::ptrdiff_t>(grain) * columns_a_grain_, columns_a_grain_,
+                wider.begin() + static_cast<std::ptrdiff_t>(grain) * columns);
+  rows_ = std::move(wider);
+  columns_a_grain_ = columns;
 }
 
 // Grains that have left cover nothing.

@@ -53,6 +53,7 @@ private:
   Rows covered(const Disk& disk, double x, std::int64_t column) const;
   std::int64_t first_column(double x, double radius) const;
   double near(double x, std::int64_t column) const;
+  void make_room_for(const GrainView& grains);
   void forget_others(const std::vector<Disk>& disks);
   void begin(const Disk& disk);
   void narrow(const Disk& disk);
@@ -64,7 +65,7 @@ private:
   double width_, height_;                  // m, of a pixel
   double static_time_;                     // s
   std::optional<DistributionById> homes_;  // from the first look on
-  std::int64_t columns_a_grain_ = 0;       // columns that the largest grain can cover
+  std::int64_t columns_a_grain_ = 0;       // columns that the largest grain so far can cover
   std::vector<std::int64_t> first_;        // of each grain whose home is here: its first column, may be outside the box
   std::vector<Rows> rows_;                 // of each such grain and its columns
   double begun_ = 0.0, picture_begun_ = 0.0;  // s: of the looks under way, and of the latest picture

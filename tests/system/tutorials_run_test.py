@@ -43,8 +43,9 @@ class Tutorials(ProgramTest):
 
     def test_every_case_is_checked_and_starts(self):
         cases = sorted((self.folder / TUTORIALS).glob("*/case.yaml"))
-        self.assertEqual(len(cases), 7)   # the third varies the case of the second
+        self.assertEqual(len(cases), 8)   # the third varies the case of the second
         self.run_well("run", f"{TUTORIALS}/7_scour_at_a_pier/pour.yaml", "--out", "run/pier_bed", "--until", "0.05")
+        self.run_well("run", f"{TUTORIALS}/9_feed_flume/bed.yaml", "--out", "run/feed_bed", "--until", "0.2")
         for case in cases:
             name = case.parent.name
             self.assertNotIn("\nwarning", self.run_well("check", case).stdout, name)
@@ -56,7 +57,7 @@ class Tutorials(ProgramTest):
         sweeps = [
             path
             for path in sorted((self.folder / TUTORIALS).glob("*/*.yaml"))
-            if path.name not in ("case.yaml", "pour.yaml")
+            if path.name not in ("case.yaml", "pour.yaml", "bed.yaml")
         ]
         self.assertEqual(len(sweeps), 3)
         for sweep in sweeps:
@@ -65,7 +66,7 @@ class Tutorials(ProgramTest):
 
     def test_a_run_that_is_not_there(self):
         scripts = sorted((ROOT / TUTORIALS).glob("*/check.py"))
-        self.assertEqual(len(scripts), 8)
+        self.assertEqual(len(scripts), 9)
         for script in scripts[1:]:   # the beds of the first are there
             done = self.check_script(script.parent.name)
             self.assertEqual(done.returncode, 1, done.stdout)

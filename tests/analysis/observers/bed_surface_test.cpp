@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -302,6 +303,19 @@ TEST(StaticPixels, AreThoseThatOneGrainCoversAllTheTime) {
     EXPECT_GT(std::set<double>(expected.begin(), expected.end()).size(), 20u);  // there is something to see
   }
   EXPECT_EQ(pictures, 2);
+}
+
+// A supply may begin with a box without grains: those that come in later are seen as wide as they are.
+TEST(StaticPixels, OfGrainsThatComeInLaterAreAllTheirColumns) {
+  Spheres spheres(world), others(world);
+  StaticPixels late(world, spheres.box(), d / 25.0, 0.5), early(world, spheres.box(), d / 25.0, 0.5);
+  const std::vector<Vec3> lying{{3.02 * d, d, 0.5 * d}, {8.02 * d, d, 0.5 * d}};
+  for (std::int64_t step = 0; step <= 8; ++step) {
+    late.look(spheres.at(step, step < 3 ? std::vector<Vec3>{} : lying));
+    early.look(others.at(step, lying));
+  }
+  EXPECT_EQ(late.surface(), early.surface());
+  EXPECT_EQ(std::count_if(early.surface().begin(), early.surface().end(), StaticPixels::is_static), 50);
 }
 
 TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
