@@ -194,7 +194,7 @@ void add_turnover(const Case& c, Lines& lines) {
         n, rate, supply.population, rate * mass, unit > 0.0 ? fmt::format(", q* {:.3g}", rate * mass / unit) : "",
         std::floor(rate * std::max(0.0, until - supply.from)), supply.from, until));
   }
-  if (c.grains.empty() || periodic_axes(c.domain)[2]) return;
+  if (c.sinks.empty() || c.grains.empty() || periodic_axes(c.domain)[2]) return;
   const double surface = settled_height(c);
   const SolidCells solids(c);
   for (std::size_t n = 0; n < c.sinks.size(); ++n) {
