@@ -57,8 +57,8 @@ public:
   Page look(double time, const PeriodicBox& box, GlobalId end_of_ids, const std::vector<Body>& bodies);
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective
-  // Where there was no look yet, it begins here. Throws InputError where the book is damaged. Collective.
-  // bodies: in the box at the latest look. Throws DamagedFile if fewer are remembered. Collective.
+  // Where there was no look yet, it begins here. bodies: in the box at the latest look. Throws DamagedFile if fewer are
+  // remembered, or values that no grain has. Collective.
   void load(ArchiveReader& archive, const std::string& group, std::int64_t bodies);
 
 private:
