@@ -51,7 +51,8 @@ run: {until: 100}
 
 inline driver::Case read_text(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
   const ScratchFolder folder;
-  put(folder / "case.yaml", yaml);
+  if (rank_of(MPI_COMM_WORLD) == 0) put(folder / "case.yaml", yaml);
+  MPI_Barrier(MPI_COMM_WORLD);  // else a rank may read what another is writing
   return driver::read_case(folder / "case.yaml", overrides);
 }
 
