@@ -60,8 +60,8 @@ class LayerSums:
     def add(self, frame):
         if np.any(frame.arrays.get("clump", -1) >= 0):
             raise RunFolderError(
-                "frames have the members of clumps, whose volumes overlap; add analysis.grain_profiles to the "
-                "case, which counts clumps."
+                "frames have the members of clumps, whose volumes overlap; analysis.grain_profiles in the case counts "
+                "clumps, in profiles.h5."
             )
         part = self.parts(frame.position[:, 2], frame.radius)
         self.frames += 1

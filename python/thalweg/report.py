@@ -112,6 +112,26 @@ def describe_sizes(report):
     report.say("sizes", found.sentence())
 
 
+def describe_reach(report):
+    found = (report.run.summary or {}).get("reach")
+    if found is None:
+        raise RunFolderError("the means along x are in summary.json, which the run writes at its end.")
+    report.numbers["reach"] = found
+    name, label, unit = ("q_star", "q*", "") if "q_star_mean" in found else ("q_s", "q_s", " m^2/s")
+    mean, error = found[f"{name}_mean"], found[f"{name}_error"]
+    if mean is None:
+        raise RunFolderError("nothing was measured before the end of the run.")
+    known = "" if error is None else f" +- {error:.2g}"
+    report.say("reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections, from {found['mean_from']:g} s on")
+    trend = found["bed_level_trend"]
+    if trend is not None:
+        report.say("reach", f"bed at {found['bed_level_mean']:.4g} m, {'falling' if trend < 0.0 else 'rising'} by {abs(trend):.2g} m/s")
+    if found["arrived_grains"] or found["left_grains"]:
+        stay = found["residence_time_mean"]
+        report.say("reach", f"{found['arrived_grains']:g} grains came in, {found['left_grains']:g} left"
+                   + ("" if stay is None else f"; those that did both stayed for {stay:.3g} s"))
+
+
 def describe_surface(report, name, title, surface):
     run = report.run
     depth = float(run.size[2] - surface)
@@ -176,6 +196,8 @@ def report_of(run, start=None, stop=None):
     report.attempt("transport", lambda: describe_transport(report))
     if "fractional_transport" in (run.case.get("analysis") or {}):
         report.attempt("sizes", lambda: describe_sizes(report))
+    if "reach" in (run.case.get("analysis") or {}):
+        report.attempt("reach", lambda: describe_reach(report))
     report.attempt("surface", lambda: describe_profiles(report))
     if run.case.get("fluid"):
         report.attempt("static", lambda: describe_camera(report))

@@ -12,6 +12,7 @@ from thalweg.errors import RunFolderError
 from thalweg.figures import overview
 from thalweg.figures import reach as figure
 from thalweg.page.sections import reach_section
+from thalweg.report import Report, describe_reach
 
 X, SECTION = np.array([0.01, 0.03, 0.05]), np.array([0.02, 0.04])
 Q_STAR = np.array([[0.0, 0.1], [0.2, 0.3], [0.4, 0.5]])   # [time, section]
@@ -47,6 +48,22 @@ class ReachTest(made_up.MadeUpFolder):
                 ("q_star_error", [0.05, 0.1], "1", "section"), ("bed_level", [0.012, 0.02, 0.03], "m", "x"),
             ):
                 made_up.write_array(file, f"reach/{name}", np.array(values), unit, axis)
+
+    def lines_of_reach(self):
+        report = Report(self.run_())
+        report.attempt("reach", lambda: describe_reach(report))
+        return report.lines
+
+    def test_analyze_tells_the_means_of_the_summary(self):
+        self.assertEqual(self.lines_of_reach(), [
+            "reach      left out: the means along x are in summary.json, which the run writes at its end."])
+        means = {"q_star_mean": 0.25, "q_star_error": 0.05, "mean_from": 1.0, "bed_level_mean": 0.02, "bed_level_trend": -3e-4,
+                 "arrived_grains": 12, "left_grains": 10, "residence_time_mean": None}
+        (self.folder / "summary.json").write_text(json.dumps({"reach": means}), encoding="utf-8")
+        self.assertEqual(self.lines_of_reach(), [
+            "reach      q* = 0.25 +- 0.05, mean of all sections, from 1 s on",
+            "reach      bed at 0.02 m, falling by 0.0003 m/s",
+            "reach      12 grains came in, 10 left"])
 
     def run_(self):
         return thalweg.Run(self.folder)
