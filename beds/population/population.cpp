@@ -7,6 +7,7 @@
 namespace thalweg::beds {
 void ClumpFigures::add(const ClumpFigures& more) {
   least_contact_mass = count == 0 ? more.least_contact_mass : std::min(least_contact_mass, more.least_contact_mass);
+  shortest_axis = count == 0 ? more.shortest_axis : std::min(shortest_axis, more.shortest_axis);
   count += more.count;
   volume += more.volume;
   largest_extent = std::max(largest_extent, more.largest_extent);
@@ -60,6 +61,11 @@ double Population::largest_diameter() const {
 }
 
 double Population::largest_extent() const { return std::max(largest_diameter(), clumps.largest_extent); }
+
+double Population::narrowest() const {
+  if (clumps.count == 0) return smallest_diameter();
+  return clumps.count == count ? clumps.shortest_axis : std::min(clumps.shortest_axis, smallest_diameter());
+}
 
 double Population::lightest_mass() const {
   if (shape) return clumps.least_contact_mass;

@@ -93,6 +93,7 @@ struct ClumpFigures {
   double volume = 0.0;              // m^3, of all
   double least_contact_mass = 0.0;  // kg, the least that a contact of any of them feels
   double largest_extent = 0.0;      // m, diameter of the sphere about its centre that holds the largest
+  double shortest_axis = 0.0;       // m, of any of them (clump_axes())
   bool operator==(const ClumpFigures&) const = default;
 
   void add(const ClumpFigures& more);  // figures of at least one more clump
@@ -153,6 +154,7 @@ struct Population : PopulationKeys {
   double volume_of(double grain_diameter) const;   // m^3, of a sphere, or a disk as thick as they are; m
   double smallest_diameter() const;                // m, of spheres and members
   double largest_diameter() const;                 // m
+  double narrowest() const;                        // m, diameter of a sphere or shortest axis of a clump
   double largest_extent() const;                   // m, of spheres and clumps
   double lightest_mass() const;                    // kg, the least that a contact feels
   double radius_per_mass() const;                  // m/kg, the largest, with the mass that a contact feels

@@ -58,13 +58,13 @@ std::shared_ptr<const dem::ClumpShape> ClumpShapes::of(double diameter) {
   return shape;
 }
 
-double intermediate_axis(const dem::ClumpShape& shape) {
-  std::array<double, 3> squares;
+std::array<double, 3> clump_axes(const dem::ClumpShape& shape) {
+  std::array<double, 3> axes;
   for (int n = 0; n < 3; ++n)
-    squares[static_cast<std::size_t>(n)] =
-        10.0 * std::max(0.0, shape.moments.sum() - 2.0 * shape.moments[n]) / shape.volume;
-  std::sort(squares.begin(), squares.end());
-  return std::sqrt(squares[1]);
+    axes[static_cast<std::size_t>(n)] =
+        std::sqrt(10.0 * std::max(0.0, shape.moments.sum() - 2.0 * shape.moments[n]) / shape.volume);
+  std::sort(axes.begin(), axes.end());
+  return axes;
 }
 
 void take_surface(ShapeKeys& shape, const TriangleMesh& surface) {
@@ -180,7 +180,7 @@ dem::ClumpSeed clump_from(std::span<const BedGrain> rows, const PeriodicBox& box
 
 ClumpFigures figures_of(const dem::ClumpShape& shape, double density, std::int64_t count) {
   return {count, static_cast<double>(count) * shape.volume, shape.least_contact_mass(density),
-          2.0 * shape.bounding_radius};
+          2.0 * shape.bounding_radius, clump_axes(shape)[0]};
 }
 
 ClumpFigures figures_of(const Population& population, const dem::ClumpShape& as_given) {

@@ -7,6 +7,7 @@
 #include "core/state/bed.hpp"
 #include "dem/clumps/clump_seed.hpp"
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -31,9 +32,9 @@ private:
   std::map<double, std::shared_ptr<const dem::ClumpShape>> by_diameter_;
 };
 
-// m, of the three axes of the ellipsoid with the clump's moments of inertia (shapes/shape_figures.hpp) the middle one,
-// which decides what sieve a grain passes. Not of disks.
-double intermediate_axis(const dem::ClumpShape& shape);
+// m, the three axes of the ellipsoid with the clump's moments of inertia (shapes/shape_figures.hpp), rising. The middle
+// one decides what sieve a grain passes. Not of disks.
+std::array<double, 3> clump_axes(const dem::ClumpShape& shape);
 
 // Makes the clump of `shape` of a surface in m, by its number of spheres and tolerance, and forgets these. Throws
 // InputError where none can be made (shapes/mesh_clump.hpp).

@@ -47,7 +47,7 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
                  .at_least = 1,
                  .automatic = CouplingKeys::as_many_as_needed});
   visit.real("fewest_cells_per_diameter", coupling.fewest_cells_per_diameter,
-             {.meaning = "across the smallest grain, without a warning; fewer than 1.74 are refused", .above = 0.0});
+             {.meaning = "across the narrowest grain, a clump by its shortest axis, without a warning", .above = 0.0});
   visit.choice("momentum_exchange", coupling.momentum_exchange, {.meaning = "how the force on a grain is summed"});
   visit.choice<CoveredMomentum>(
       "covered_momentum", coupling.covered_momentum,

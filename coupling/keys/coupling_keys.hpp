@@ -24,7 +24,7 @@ struct CouplingKeys {
   // The word auto; once a case is read, it has sub_steps_needed() in its place.
   static constexpr std::int64_t as_many_as_needed = 0;
   std::int64_t grain_steps_per_fluid_step = as_many_as_needed;
-  double fewest_cells_per_diameter = 6.0;  // of the smallest grain, without a warning
+  double fewest_cells_per_diameter = 6.0;  // of the narrowest grain, without a warning
   bodies::MomentumExchange momentum_exchange = bodies::MomentumExchange::galilean_invariant;
   bodies::LinkRule links = bodies::LinkRule::bouzidi;
   CoveredMomentum covered_momentum = CoveredMomentum::lost;

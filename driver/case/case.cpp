@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 namespace thalweg::driver {
 
@@ -46,13 +47,16 @@ Index3 cells_of(const DomainCase& domain) {
   return cells;
 }
 
-double spacing_below(const DomainCase& domain, double most) {
-  const double longest = domain.size.maxCoeff();
-  for (double cells = std::ceil(longest / most * (1.0 - 1e-9)); cells < 1.25 * longest / most + 1.0; cells += 1.0) {
-    const Vec3 along = domain.size * cells / longest;
-    if (((along.array() - along.array().round()).abs() <= 5e-7 * along.array()).all()) return longest / cells;
-  }
-  return domain.spacing / std::ceil(domain.spacing / most * (1.0 - 1e-9));
+bool height_follows(const Case& c) { return c.filled_in.flow.find("domain.size") != std::string::npos; }
+
+double spacing_below(const Case& c, double most) {
+  const std::span<const double> sides(c.domain.size.data(), height_follows(c) ? 2 : 3);
+  const double longest = *std::max_element(sides.begin(), sides.end());
+  const auto is_whole = [](double cells) { return std::abs(cells - std::round(cells)) <= 5e-7 * cells; };
+  for (double cells = std::ceil(longest / most * (1.0 - 1e-9)); cells < 1.25 * longest / most + 1.0; cells += 1.0)
+    if (std::all_of(sides.begin(), sides.end(), [&](double side) { return is_whole(side * cells / longest); }))
+      return longest / cells;
+  return c.domain.spacing / std::ceil(c.domain.spacing / most * (1.0 - 1e-9));
 }
 
 std::array<bool, 3> periodic_axes(const DomainCase& domain) {
@@ -140,6 +144,12 @@ double smallest_diameter(const Case& c) {
   double diameter = largest_diameter(c);
   for (const beds::Population& population : c.grains) diameter = std::min(diameter, population.smallest_diameter());
   return diameter;
+}
+
+double narrowest_grain(const Case& c) {
+  double width = largest_extent(c);
+  for (const beds::Population& population : c.grains) width = std::min(width, population.narrowest());
+  return width;
 }
 
 double grain_volume(const Case& c) {

@@ -202,9 +202,11 @@ continuum::SystemParameters column_of(const Case& c);  // the column of system: 
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
 
-// The largest spacing (m) of at most `most` of which every side of the domain is a whole number; where there is none
-// within a fifth of it, the largest whole fraction of the present spacing.
-double spacing_below(const DomainCase& domain, double most);
+bool height_follows(const Case& c);  // from the section flow, and so from the spacing
+
+// The largest spacing (m) of at most `most` of which every side of the domain that is given is a whole number; where
+// there is none within a fifth of it, the largest whole fraction of the present spacing.
+double spacing_below(const Case& c, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
 double fluid_time_step(const Case& c);            // s
 std::int64_t grain_steps(const Case& c);          // sub-steps in a step of the fluid; of dry grains in one step_time()
@@ -224,6 +226,7 @@ double largest_size(const beds::Population& grains);  // m, of spheres, and of c
 double largest_size(const Case& c);                   // m, of all populations
 double largest_extent(const Case& c);                 // m, the same with clumps as they are long
 double smallest_diameter(const Case& c);              // m; 0 without grains
+double narrowest_grain(const Case& c);                // m, the same with clumps by their shortest axis
 double grain_volume(const Case& c);                   // m^3, of all grains
 model_fluid::MeanGrain mean_grain(const Case& c);     // mean of all grains
 model_fluid::ModelFluidParameters model_fluid_of(const Case& c);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 namespace thalweg::driver {
 
@@ -89,10 +90,17 @@ double stream_drag_error(double cells_per_diameter, double reynolds) {
 
 namespace {
 
-// A body of this diameter (m) in a flow of this speed (m/s). whose: of these cells and this number, " of ...".
-std::string drag_of(const Case& c, double diameter, double speed, const char* what, const std::string& whose) {
-  const double cells = diameter / c.domain.spacing, reynolds = speed * diameter / c.fluid.kinematic_viscosity;
-  const std::string where = fmt::format("at {:.3g} cells and a Reynolds number of {:.4g}{}", cells, reynolds, whose);
+// The cells across a clump are those of its shortest axis, its Reynolds number that of the sphere of its volume; m.
+struct Bluff {
+  double width = 0.0, diameter = 0.0;
+  bool clump = false;
+};
+
+// A body in a flow of this speed (m/s). whose: of these cells and this number, " of ...".
+std::string drag_of(const Case& c, const Bluff& body, double speed, const char* what, const std::string& whose) {
+  const double cells = body.width / c.domain.spacing, reynolds = speed * body.diameter / c.fluid.kinematic_viscosity;
+  const std::string where = fmt::format("at {:.3g} cells{} and a Reynolds number of {:.4g}{}", cells,
+                                        body.clump ? " across the shortest axis" : "", reynolds, whose);
   const bool eddies = c.fluid.subgrid().on(), thick = c.fluid.subgrid().viscosity_in_shear(1.0) > 0.0;
   if (reynolds < 10.0)
     return fmt::format("{}{}, {}", slow_text(c, cells),
@@ -109,20 +117,23 @@ std::string drag_of(const Case& c, double diameter, double speed, const char* wh
   return fmt::format("too large {}; at 2400 a sphere alone fell {}", where, nearest_in_water(c.fluid, cells));
 }
 
-// The finest grains, free ones if there are any.
+// The grains with the fewest cells across, free ones if there are any.
 std::string drag_on_grains(const Case& c) {
-  double finest = 0.0, falling = 0.0, coarsest = 0.0;
+  Bluff body;
+  double falling = 0.0;
+  bool alike = true;
   for (const std::size_t p : free_populations(c)) {
     const beds::Population& grains = c.grains[p];
-    coarsest = std::max(coarsest, grains.largest_diameter());
-    if (finest > 0.0 && grains.smallest_diameter() >= finest) continue;
-    finest = grains.smallest_diameter();
+    const std::vector<beds::SizeCount> sizes = grains.sizes_of_grains();
+    alike = alike && sizes.size() == 1 && (body.width == 0.0 || sizes.front().diameter == body.diameter);
+    if (body.width > 0.0 && grains.narrowest() >= body.width) continue;
+    body = {grains.narrowest(), sizes.front().diameter, grains.clumps.count > 0};
     falling = grains.held() ? 0.0
-                            : settling_velocity(finest, grains.density / c.fluid.density,
+                            : settling_velocity(body.diameter, grains.density / c.fluid.density,
                                                 gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
   }
   const double speed = falling > 0.0 ? falling : flow_estimate(c).speed;
-  return drag_of(c, finest, speed, "a grain", finest < coarsest ? " of the finest grains" : "");
+  return drag_of(c, body, speed, "a grain", alike ? "" : " of the finest grains");
 }
 
 // The solid with the fewest cells across, as a sphere.
@@ -137,7 +148,7 @@ std::string drag_on_solids(const Case& c) {
   }
   const double speed = flow_estimate(c).speed;
   if (!(speed > 0.0)) return {};
-  return drag_of(c, width, speed, "a sphere",
+  return drag_of(c, {width, width}, speed, "a sphere",
                  fmt::format(" of {}solids.{}", c.solids[thinnest].sphere ? "" : "a sphere as wide as ", thinnest));
 }
 

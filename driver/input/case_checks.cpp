@@ -52,11 +52,10 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
   if (c.domain.spacing > largest * (1.0 + whole_number_tolerance))
     throw document.error(
         "domain.spacing",
-        fmt::format(
-            "the spacing is too coarse for grains of {:.6g} m, which would lie between the "
-            "centres of cells and not be seen; give at most {} m, better domain.spacing: {:.9g}",
-            smallest_diameter(c), at_most_text(largest, 4),
-            spacing_below(c.domain, std::min(largest, smallest_diameter(c) / c.coupling.fewest_cells_per_diameter))));
+        fmt::format("the spacing is too coarse for grains of {:.6g} m, which would lie between the "
+                    "centres of cells and not be seen; give at most {} m, better domain.spacing: {:.9g}",
+                    smallest_diameter(c), at_most_text(largest, 4),
+                    spacing_below(c, std::min(largest, narrowest_grain(c) / c.coupling.fewest_cells_per_diameter))));
 }
 
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {

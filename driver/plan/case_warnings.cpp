@@ -191,9 +191,9 @@ Warnings sliding_bed(const Case& c) {
 constexpr double barely_resolved = 5.0;
 
 Warnings coarse_cells(const Case& c) {
-  const double cells = smallest_diameter(c) / c.domain.spacing, fewest = c.coupling.fewest_cells_per_diameter;
+  const double cells = narrowest_grain(c) / c.domain.spacing, fewest = c.coupling.fewest_cells_per_diameter;
   if (c.grains.empty() || cells >= fewest * (1.0 - whole_number_tolerance)) return {};
-  const Change finer = spacing_change(c, smallest_diameter(c) / fewest);
+  const Change finer = spacing_change(c, narrowest_grain(c) / fewest);
   const Case after = changed(c, {finer});
   const Change step =
       fluid_step_change(fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down);

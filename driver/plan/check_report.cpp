@@ -146,17 +146,16 @@ std::string sizes_text(const beds::Population& population) {
       population.thickness > 0.0
           ? std::string()
           : fmt::format("; intermediate axis {:.3g} of the size",
-                        beds::intermediate_axis(*beds::clump_shape_of(population)) / population.shape_diameter));
+                        beds::clump_axes(*beds::clump_shape_of(population))[1] / population.shape_diameter));
 }
 
 void add_grains(const Case& c, Lines& lines) {
   for (const beds::Population& population : c.grains)
     lines.push_back(
         fmt::format("grains     {} {}, {:g} kg/m^3", population.count, sizes_text(population), population.density) +
-        (has_fluid(c)
-             ? fmt::format(": {:.3g} cells a diameter{}", population.smallest_diameter() / c.domain.spacing,
-                           population.shape && population.shape->clump.size() > 1 ? " of the smallest sphere" : "")
-             : ""));
+        (has_fluid(c) ? fmt::format(": {:.3g} cells across {}", population.narrowest() / c.domain.spacing,
+                                    population.clumps.count > 0 ? "the shortest axis" : "a diameter")
+                      : ""));
   if (c.grains.empty()) return;
   lines.push_back("contact    " + contact_text(c));
   add_overlaps(c, lines);

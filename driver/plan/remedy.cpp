@@ -72,8 +72,11 @@ Change fluid_step_change(double limit, int digits, Rounding rounding) {
 
 Change spacing_change(const Case& c, double most) {
   constexpr int digits = 9;  // so that a side is whole to a millionth
-  return exact_change("domain.spacing", spacing_below(c.domain, most), digits,
-                      [](Case& other, double spacing) { other.domain.spacing = spacing; });
+  return exact_change("domain.spacing", spacing_below(c, most), digits, [](Case& other, double spacing) {
+    other.domain.spacing = spacing;
+    double& height = other.domain.size.z();
+    if (height_follows(other)) height = spacing * std::ceil(height / spacing * (1.0 - whole_number_tolerance));
+  });
 }
 
 Remedy with_grain_steps(const Case& c, Remedy remedy) {

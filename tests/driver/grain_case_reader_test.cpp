@@ -100,6 +100,10 @@ TEST(GrainCaseReader, ClumpsTakeSizesAsSpheresDo) {
   EXPECT_NEAR(clump.smallest_diameter() / (member * sphere.smallest_diameter()), 1.0, 1e-12);
   EXPECT_NEAR(clump.largest_diameter() / (member * sphere.largest_diameter()), 1.0, 1e-12);
   EXPECT_NEAR(clump.clumps.largest_extent / (1.5 * clump.largest_diameter()), 1.0, 1e-12);
+  // Twins have <y^2> = (8/15 - 53/960)/(9/4) R^2 = 17/80 R^2 across the line of their centres, of both spheres less
+  // their lens; the axis is 2 (5 <y^2>)^1/2, for any body as large as the smallest.
+  EXPECT_NEAR(clump.narrowest() / clump.smallest_diameter(), std::sqrt(17.0 / 16.0), 1e-3);
+  EXPECT_EQ(sphere.narrowest(), sphere.smallest_diameter());
   // The smallest is the lightest to the touch, in proportion to its mass.
   const double lighter = std::pow(sphere.smallest_diameter() / 3e-3, 3);
   EXPECT_NEAR(clump.lightest_mass() / (lighter * one.grains[0].lightest_mass()), 1.0, 1e-12);

@@ -156,6 +156,16 @@ TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
   EXPECT_EQ(warning(), "");
 }
 
+// A height that follows from the flow is made of whole cells, whatever they are.
+TEST(Case, ASpacingNeedNotDivideAHeightThatFollows) {
+  Case c = wide_bed();
+  c.domain.size = Vec3(0.06, 0.03, 0.040625);
+  c.domain.spacing = 0.625e-3;
+  EXPECT_EQ(spacing_below(c, 0.55e-3), 0.5 * 0.625e-3);  // 192 by 96 by 130 cells
+  c.filled_in.flow = "domain.size: [0.06, 0.03, 0.040625]";
+  EXPECT_EQ(spacing_below(c, 0.55e-3), 0.06 / 110);  // and 55 cells
+}
+
 TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   Case c = lasting_contacts();
   c.fluid.collision = lbm::CollisionModel::trt;
