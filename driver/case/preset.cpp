@@ -70,7 +70,7 @@ std::string lay_preset_beneath(io::YamlDocument& document) {
   const std::optional<std::string_view> text = preset_text(name);
   if (named->kind != io::YamlNode::Kind::scalar || !text)
     throw document.error("preset", fmt::format("there is no such preset; expected {}", preset_names()));
-  const io::YamlNode preset = io::parsed_yaml(std::string(*text), "preset " + name);
+  const io::YamlNode preset = io::parsed_yaml(std::string(*text), named->place + ": preset " + name);
   refuse_other_system(document, preset);
   io::LaidBeneath keys = document.lay_beneath(preset, keys_with_alternatives_in(document));
   std::erase(keys.left_out, "system");  // the same

@@ -101,9 +101,9 @@ TEST(Preset, IsRefusedWithThePlaceAndTheNames) {
   EXPECT_TRUE(contains(message({}), "case.yaml:13: coupling.load = \"wrong\""));
   put(folder / "case.yaml", published);
   EXPECT_TRUE(contains(message({"contact.damping=null"}), "contact.restitution: the loss in a collision is missing"));
-  EXPECT_TRUE(
-      contains(message({"fluid.time_step=2.0e-3"}),
-               "preset zhang2022:19: coupling.grain_steps_per_fluid_step = 50: a step of the grains of 4e-05 s"));
+  EXPECT_TRUE(contains(
+      message({"fluid.time_step=2.0e-3"}),
+      "case.yaml:2: preset zhang2022:19: coupling.grain_steps_per_fluid_step = 50: a step of the grains of 4e-05 s"));
 }
 
 TEST(Preset, IsShownAsItIs) {
