@@ -125,7 +125,8 @@ def describe_reach(report):
     report.say("reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections, from {found['mean_from']:g} s on")
     trend = found["bed_level_trend"]
     if trend is not None:
-        report.say("reach", f"bed at {found['bed_level_mean']:.4g} m, {'falling' if trend < 0.0 else 'rising'} by {abs(trend):.2g} m/s")
+        way = "falling" if trend < 0.0 else "rising"
+        report.say("reach", f"bed at {found['bed_level_mean']:.4g} m, {way} by {abs(trend):.2g} m/s")
     if found["arrived_grains"] or found["left_grains"]:
         stay = found["residence_time_mean"]
         report.say("reach", f"{found['arrived_grains']:g} grains came in, {found['left_grains']:g} left"

@@ -3,9 +3,11 @@
 
 Runs of settling.yaml: the velocity at the end, relative to that of the whole volume, beside the one that the drag of
 Oberbeck (1876) and the correction of Hasimoto (1959) for a periodic box give. Runs of jeffery.yaml: the period of the
-turn about the vorticity beside that of Jeffery (1922). Runs of towed.yaml: the drag coefficient over the last third of the
-way beside Hölzer and Sommerfeld (2008), of a sphere Brown and Lawler (2003). Half axes are those of the ellipsoid with the volume and the moments of inertia
-of the grain. Prints both, their difference, and pass or fail (3 %, towed 10 %); exit code 0 if all pass.
+turn about the vorticity beside that of Jeffery (1922). Runs of towed.yaml: the drag coefficient over the last third of
+the way beside that of finite elements in the same box (reference.csv, by reference.py), or where there is none beside
+Hölzer and Sommerfeld (2008), of a sphere Brown and Lawler (2003). Half axes are those of the ellipsoid with the volume
+and the moments of inertia of the grain. Prints both, their difference, and pass or fail (3 %, towed 10 %); exit code 0
+if all pass.
 """
 import argparse
 import csv

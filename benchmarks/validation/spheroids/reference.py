@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Drag of spheres and spheroids by finite elements, on a mesh that fits the body: reference.py [SHAPE...] [--size H] [--width W] [--reynolds NUMBER...]
+"""Drag of spheres and spheroids by finite elements, on a mesh that fits the body:
+reference.py [SHAPE...] [--size H] [--width W] [--reynolds NUMBER...]
 
-Steady flow past one of a square array of bodies, W diameters of the sphere of the same volume apart, 6 as in towed.yaml: the
-Navier-Stokes equations with quadratic velocities and linear pressures (Taylor and Hood) on a quarter of the box, whose
-other sides are planes of symmetry, from a uniform stream six diameters before the body to an open end nine behind it.
-The force is the reaction at the body. Prints the drag coefficient, with the area of the sphere of the same volume, at
-Reynolds numbers of 10, 50 and 100, or those given, which must rise in steps small enough for Newton's method. SHAPE: sphere, or prolate or oblate followed by _along or _across (all of them
-without any). H: size of the elements at the body, in diameters. Needs DOLFIN and gmsh, on Debian the packages
-python3-dolfin and gmsh, and three minutes a shape.
+Steady flow past one of a square array of bodies, W diameters of the sphere of the same volume apart, 6 as in
+towed.yaml: the Navier-Stokes equations with quadratic velocities and linear pressures (Taylor and Hood) on a quarter of
+the box, whose other sides are planes of symmetry, from a uniform stream six diameters before the body to an open end
+nine behind it. The force is the reaction at the body. Prints the drag coefficient, with the area of the sphere of the
+same volume, at Reynolds numbers of 10, 50 and 100, or those given, which must rise in steps small enough for Newton's
+method. SHAPE: sphere, or prolate or oblate followed by _along or _across (all of them without any). H: size of the
+elements at the body, in diameters. Needs DOLFIN and gmsh, on Debian the packages python3-dolfin and gmsh, and three
+minutes a shape.
 """
 import argparse
 import math
@@ -45,7 +47,9 @@ Field[2] = MathEval;
 Field[2].F = "0.75";
 Field[3] = Box;
 Field[3].VIn = 0.16; Field[3].VOut = 0.75; Field[3].Thickness = 2;
-Field[3].XMin = -0.8; Field[3].XMax = 3.5; Field[3].YMin = 0; Field[3].YMax = 0.9; Field[3].ZMin = 0; Field[3].ZMax = 0.9;
+Field[3].XMin = -0.8; Field[3].XMax = 3.5;
+Field[3].YMin = 0; Field[3].YMax = 0.9;
+Field[3].ZMin = 0; Field[3].ZMax = 0.9;
 Field[4] = Min; Field[4].FieldsList = {{1, 2, 3}};
 Background Field = 4;
 Mesh.CharacteristicLengthExtendFromBoundary = 0;
@@ -65,9 +69,10 @@ def mesh_around(half_axes, size, half_width):
     a, b, c = half_axes
     with tempfile.TemporaryDirectory() as folder:
         geometry, mesh_file = Path(folder, "box.geo"), Path(folder, "box.msh")
-        geometry.write_text(GEOMETRY.format(a=a, b=b, c=c, size=size, start=-BEFORE, length=BEFORE + BEHIND, half=half_width),
-                            encoding="utf-8")
-        subprocess.run(["gmsh", "-3", "-format", "msh2", geometry, "-o", mesh_file], check=True, stdout=subprocess.DEVNULL)
+        text = GEOMETRY.format(a=a, b=b, c=c, size=size, start=-BEFORE, length=BEFORE + BEHIND, half=half_width)
+        geometry.write_text(text, encoding="utf-8")
+        command = ["gmsh", "-3", "-format", "msh2", geometry, "-o", mesh_file]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         lines = mesh_file.read_text(encoding="utf-8").split("\n")
     points = np.array([[float(word) for word in row[1:4]] for row in section(lines, "Nodes")])
     corners = np.array([[int(word) - 1 for word in row[-4:]] for row in section(lines, "Elements") if row[1] == "4"])
@@ -110,10 +115,10 @@ def drag_coefficients(half_axes, size, half_width, reynolds_numbers):
     at_body = fe.Function(space)        # 1 along the stream at the body, 0 elsewhere
     fe.DirichletBC(space.sub(0).sub(0), 1.0, body).apply(at_body.vector())
     found = {}
+    newton = {"linear_solver": "mumps", "relative_tolerance": 1e-6, "absolute_tolerance": 1e-7, "maximum_iterations": 12}
     for reynolds in reynolds_numbers:
         viscosity.assign(1.0 / reynolds)
-        fe.solve(residual == 0, state, conditions, solver_parameters={"newton_solver": {
-            "linear_solver": "mumps", "relative_tolerance": 1e-6, "absolute_tolerance": 1e-7, "maximum_iterations": 12}})
+        fe.solve(residual == 0, state, conditions, solver_parameters={"newton_solver": newton})
         force = -4.0 * fe.assemble(residual).inner(at_body.vector())      # of the four quarters
         found[reynolds] = force / (0.5 * math.pi / 4.0)
     return found
