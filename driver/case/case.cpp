@@ -47,10 +47,8 @@ Index3 cells_of(const DomainCase& domain) {
   return cells;
 }
 
-bool height_follows(const Case& c) { return c.filled_in.flow.find("domain.size") != std::string::npos; }
-
 double spacing_below(const Case& c, double most) {
-  const std::span<const double> sides(c.domain.size.data(), height_follows(c) ? 2 : 3);
+  const std::span<const double> sides(c.domain.size.data(), c.filled_in.flow.height ? 2 : 3);
   const double longest = *std::max_element(sides.begin(), sides.end());
   const auto is_whole = [](double cells) { return std::abs(cells - std::round(cells)) <= 5e-7 * cells; };
   for (double cells = std::ceil(longest / most * (1.0 - 1e-9)); cells < 1.25 * longest / most + 1.0; cells += 1.0)

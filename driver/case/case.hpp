@@ -154,6 +154,12 @@ struct DisksCase {
   bool operator==(const DisksCase&) const = default;
 };
 
+// What the section flow has set.
+struct FlowFilledIn {
+  bool height = false, slope = false;  // third number of domain.size, a whole number of cells; gravity.slope
+  std::string text;                    // these keys in words; empty: there is no section
+};
+
 // Keys that the case omits and that are derived from others (estimate/filled_in.hpp), so they must be derived again
 // when those change. Two cases that differ only here are the same.
 struct FilledIn {
@@ -162,8 +168,8 @@ struct FilledIn {
   bool time_step = false;  // of the fluid
   struct {
     bool bed_height = false, shear_velocity = false, roughness = false;
-  } profile;           // initial.fluid.log_profile
-  std::string flow;    // keys that the section flow has set, in words; empty: there is none
+  } profile;  // initial.fluid.log_profile
+  FlowFilledIn flow;
   std::string preset;  // keys that a preset has set, in words; empty: there is none
   bool operator==(const FilledIn&) const { return true; }
 };
@@ -201,8 +207,6 @@ bool has_grains(SystemKind system);                    // true if a case gives i
 continuum::SystemParameters column_of(const Case& c);  // the column of system: continuum
 
 Index3 cells_of(const DomainCase& domain);  // size over spacing
-
-bool height_follows(const Case& c);  // from the section flow, and so from the spacing
 
 // The largest spacing (m) of at most `most` of which every side of the domain that is given is a whole number; where
 // there is none within a fifth of it, the largest whole fraction of the present spacing.

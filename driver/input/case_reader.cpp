@@ -105,7 +105,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   Case c;
   io::read_document(document, c);
   c.filled_in.preset = preset;
-  c.filled_in.flow = flow.text;
+  c.filled_in.flow = flow.filled_in;
   c.flow.reset();
   if (c.system == SystemKind::continuum) {
     check_column(c, document);

@@ -19,23 +19,19 @@ namespace {
 
 constexpr double tall = 100.0;  // the first guess of the height over the sum of the other two lengths
 
-// The question that a section flow asks.
-struct Question {
-  bool height, slope;  // whether it follows
-};
-
 const io::YamlNode* size_of(const io::YamlDocument& document) {
   const io::YamlNode* size = document.find("domain.size");
   return size && size->kind == io::YamlNode::Kind::list ? size : nullptr;
 }
 
-Question question_of(const io::YamlDocument& document) {
+// The keys that a section flow asks for.
+FlowFilledIn question_of(const io::YamlDocument& document) {
   const io::YamlNode* size = size_of(document);
   const bool shields = document.find("flow.shields_number"), depth = document.find("flow.depth");
   const bool slope = document.find("gravity.slope");
   if (!shields && !depth)
     throw document.error("flow", "the section is empty; give shields_number, for example 0.05, depth in m, or both");
-  const Question question{size && size->items.size() == 2, shields && !(slope && !depth)};
+  const FlowFilledIn question{size && size->items.size() == 2, shields && !(slope && !depth), {}};
   if (document.find("gravity.vector"))
     throw document.error("gravity.vector", "the section flow sets the slope; give gravity.magnitude in m/s^2 instead");
   if (document.find("fluid.mean_velocity"))
@@ -90,10 +86,10 @@ io::YamlDocument with_height(const io::YamlDocument& document, const std::vector
 }
 
 // Completes what is read of the document as far as its grains and solids make a bed.
-void make_bed(Case& c, const io::YamlDocument& document, const Question& question, const KnownBeds& known,
+void make_bed(Case& c, const io::YamlDocument& document, bool height_follows, const KnownBeds& known,
               const Ranks& ranks) {
   if (c.grains.empty()) throw document.error("flow", "there are no grains that could make a bed; remove the section");
-  if (question.height) refuse_circles(c, document);
+  if (height_follows) refuse_circles(c, document);
   fill_in_grains(c, document, known, ranks);
   fill_in_surfaces(c, document, ranks);
 }
@@ -127,8 +123,8 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
   const io::YamlDocument tried = with_height(document, overrides, ranks);
   Case c;
   io::read_document(tried, c);  // refuses misspelt keys, before any is missed
-  const Question question = question_of(document);
-  make_bed(c, tried, question, known, ranks);
+  const FlowFilledIn question = question_of(document);
+  make_bed(c, tried, question.height, known, ranks);
   if (!drives_flow(c, 0))
     throw document.error("flow",
                          "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "
@@ -140,7 +136,7 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
 
   // (s - 1) d tau*, the product of sine and hydraulic radius, m.
   const double stress_height = excess * grain.diameter * c.flow->shields_number.value_or(0.0);
-  DerivedFlow derived{overrides, {}};
+  DerivedFlow derived{overrides, question};
   std::vector<std::string> follows;
   double depth = c.domain.size.z() - bed;
   if (question.height) {
@@ -160,7 +156,7 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
     derived.overrides.push_back("gravity.slope=" + slope);
     follows.push_back("gravity.slope: " + slope);
   }
-  derived.text =
+  derived.filled_in.text =
       fmt::format("{}, for {:.4g} m of water over a bed of {:.4g} m", fmt::join(follows, " and "), depth, bed);
   return derived;
 }

@@ -16,7 +16,7 @@ namespace thalweg::driver {
 
 struct DerivedFlow {
   std::vector<std::string> overrides;  // those given, and the keys that follow; empty: the case has no section flow
-  std::string text;                    // the keys that follow, in words: "gravity.slope: 0.0453 and ..."
+  FlowFilledIn filled_in;              // text: "gravity.slope: 0.0453, for ..."
 };
 
 // Flow of a case file and its overrides. Throws InputError, with file and line, where the section does not determine

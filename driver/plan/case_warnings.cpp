@@ -159,7 +159,7 @@ Warnings laminar_flow(const Case& c) {
 
 // By the key that the case has: where the slope follows from a Shields number, that one.
 Change slope_change(const Case& c, double slope) {
-  if (c.filled_in.flow.find("gravity.slope") != std::string::npos) {
+  if (c.filled_in.flow.slope) {
     const FlowNumbers flow = flow_numbers(c);
     const double share = std::sin(std::atan(slope)) / std::sin(std::atan(flow.slope));
     return number_change("flow.shields_number", share * flow.shields_hydraulic, 2, Rounding::down,

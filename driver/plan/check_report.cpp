@@ -332,7 +332,7 @@ Lines report_with(const Case& c, const Lines& found, double bandwidth) {
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
   if (!c.filled_in.preset.empty()) lines.push_back("preset     " + c.filled_in.preset);
-  if (!c.filled_in.flow.empty()) lines.push_back("follows    " + c.filled_in.flow);
+  if (!c.filled_in.flow.text.empty()) lines.push_back("follows    " + c.filled_in.flow.text);
   add_domain(c, lines);
   append(fluid_lines(c), lines);
   add_grains(c, lines);

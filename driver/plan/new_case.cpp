@@ -318,7 +318,7 @@ std::vector<std::string> write_new_case(const Experiment& experiment, const std:
         "{}: {} grains in {} x {} x {} cells to {:g} s, about {} on {} core{}", path.string(), grain_count(c), cells[0],
         cells[1], cells[2], c.run.until, loop::clock_text(seconds_on(c, experiment.cores, bandwidth)), experiment.cores,
         experiment.cores == 1 ? "" : "s")};
-    remarks.push_back("follows: " + c.filled_in.flow);
+    remarks.push_back("follows: " + c.filled_in.flow.text);
     if (const std::string drag = drag_text(c); !drag.empty())
       remarks.push_back(fmt::format("accuracy {}: drag {}", standard_of(experiment.accuracy).name, drag));
     for (const std::string& warning : warnings(c)) remarks.push_back("warning: " + warning);

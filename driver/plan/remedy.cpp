@@ -75,7 +75,7 @@ Change spacing_change(const Case& c, double most) {
   return exact_change("domain.spacing", spacing_below(c, most), digits, [](Case& other, double spacing) {
     other.domain.spacing = spacing;
     double& height = other.domain.size.z();
-    if (height_follows(other)) height = spacing * std::ceil(height / spacing * (1.0 - whole_number_tolerance));
+    if (other.filled_in.flow.height) height = spacing * std::ceil(height / spacing * (1.0 - whole_number_tolerance));
   });
 }
 

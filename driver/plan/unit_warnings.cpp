@@ -106,7 +106,7 @@ Warnings liquid_in_grams(const Case& c) {
 
 Warnings slope_in_degrees(const Case& c) {
   const double slope = c.gravity.vector ? 0.0 : std::abs(c.gravity.slope.value_or(0.0));
-  if (slope <= steepest_bed || slope > steepest_friction || !c.filled_in.flow.empty()) return {};
+  if (slope <= steepest_bed || slope > steepest_friction || !c.filled_in.flow.text.empty()) return {};
   const double tangent = std::tan(*c.gravity.slope * std::numbers::pi / 180.0);
   return {
       {fmt::format("gravity.slope = {:g} is a bed at {:.3g} degrees, as the slope is the tangent of its angle; it "

@@ -162,7 +162,7 @@ TEST(Case, ASpacingNeedNotDivideAHeightThatFollows) {
   c.domain.size = Vec3(0.06, 0.03, 0.040625);
   c.domain.spacing = 0.625e-3;
   EXPECT_EQ(spacing_below(c, 0.55e-3), 0.5 * 0.625e-3);  // 192 by 96 by 130 cells
-  c.filled_in.flow = "domain.size: [0.06, 0.03, 0.040625]";
+  c.filled_in.flow.height = true;
   EXPECT_EQ(spacing_below(c, 0.55e-3), 0.06 / 110);  // and 55 cells
 }
 
