@@ -30,10 +30,12 @@ std::int64_t Population::row_count() const {
 }
 
 double Population::finest() const {
+  if (from_file()) return figures.sizes.front().diameter;
   return diameters.empty() ? diameter : *std::min_element(diameters.begin(), diameters.end());
 }
 
 double Population::coarsest() const {
+  if (from_file()) return figures.sizes.back().diameter;
   return diameters.empty() ? diameter : *std::max_element(diameters.begin(), diameters.end());
 }
 

@@ -144,7 +144,7 @@ struct Population : PopulationKeys {
     return shape ? shape_extent * scale_of(diameter_of(grain)) : diameter_of(grain);
   }
   double room_of_all() const { return shape ? clumps.largest_extent : largest_diameter(); }
-  // Of the smallest and the largest grain, not from a file; m.
+  // Of the smallest and the largest grain, a clump with the sphere (disk) of its volume; m.
   double finest() const;
   double coarsest() const;
   double scale_of(double grain_diameter) const {  // of the clump of this size (m) over the shape as it is given

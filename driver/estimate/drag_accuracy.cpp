@@ -124,10 +124,10 @@ std::string drag_on_grains(const Case& c) {
   bool alike = true;
   for (const std::size_t p : free_populations(c)) {
     const beds::Population& grains = c.grains[p];
-    const std::vector<beds::SizeCount> sizes = grains.sizes_of_grains();
-    alike = alike && sizes.size() == 1 && (body.width == 0.0 || sizes.front().diameter == body.diameter);
+    const double finest = grains.finest();
+    alike = alike && grains.coarsest() == finest && (body.width == 0.0 || finest == body.diameter);
     if (body.width > 0.0 && grains.narrowest() >= body.width) continue;
-    body = {grains.narrowest(), sizes.front().diameter, grains.clumps.count > 0};
+    body = {grains.narrowest(), finest, grains.clumps.count > 0};
     falling = grains.held() ? 0.0
                             : settling_velocity(body.diameter, grains.density / c.fluid.density,
                                                 gravity_vector(c.gravity).norm(), c.fluid.kinematic_viscosity);
