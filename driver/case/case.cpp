@@ -211,6 +211,10 @@ double fastest_model_fluid(const Case& c) {
   return coefficients_of(fluid.numbers, fluid.scales).velocity * fluid.profile(alone);
 }
 
+bool has_free_grains(const Case& c) {
+  return std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return !grains.held(); });
+}
+
 std::vector<std::size_t> free_populations(const Case& c) {
   std::vector<std::size_t> all(c.grains.size()), free;
   std::iota(all.begin(), all.end(), std::size_t{0});

@@ -237,6 +237,8 @@ model_fluid::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);
 
+bool has_free_grains(const Case& c);  // some that are not held
+
 // Indices of the populations that are free to move; of all where none is.
 std::vector<std::size_t> free_populations(const Case& c);
 

@@ -74,7 +74,7 @@ beds::Population grains_of(const Case& c, const Vec3& size, double share) {
   std::vector<double> diameters = some_diameters(c, 1.0 / share);
   beds::Population grains;
   grains.density = mean.mass / mean.volume;
-  grains.fixed = std::all_of(c.grains.begin(), c.grains.end(), [](const auto& g) { return g.held(); });
+  grains.fixed = !has_free_grains(c);
   grains.thickness = c.disks ? c.disks->thickness : 0.0;
   if (settled_height(c) > 0.0) {
     grains.placement.file = "a sample";

@@ -272,8 +272,7 @@ void check_recycling(const Case& c, const io::YamlDocument& document) {
 // Grains bounce off a face through which the water flows: they jam at an outlet, unless a sink takes them. An inlet
 // pushes them away.
 void check_open_faces(const Case& c, const io::YamlDocument& document) {
-  const auto free = std::find_if(c.grains.begin(), c.grains.end(), [](const auto& grains) { return !grains.held(); });
-  if (!has_fluid(c) || free == c.grains.end()) return;
+  if (!has_fluid(c) || !has_free_grains(c)) return;
   for (std::size_t face = x_low; face <= y_high; ++face) {
     const coupling::FaceKeys& open = c.domain.faces[face];
     const double inwards = (face % 2 == 0 ? 1.0 : -1.0) * open.velocity[static_cast<Eigen::Index>(face / 2)];
@@ -288,7 +287,7 @@ void check_open_faces(const Case& c, const io::YamlDocument& document) {
             "[{:g}, {:g}, {:g}], upper: [{:g}, {:g}, {:g}]}}}}] or one that is at least half as deep, give {}: "
             "periodic in place of {}_low and {}_high, or hold the grains with grains.{}.fixed: true",
             region.lower[0], region.lower[1], region.lower[2], region.upper[0], region.upper[1], region.upper[2], axis,
-            axis, axis, free - c.grains.begin()));
+            axis, axis, free_populations(c).front()));
   }
 }
 

@@ -127,14 +127,13 @@ void add_densities(const Case& c, Lines& lines) {
   const auto populations = free_populations(c);
   for (const std::size_t p : populations) {
     const beds::Population& grains = c.grains[p];
-    if (grains.held()) return;  // and so are all
     mixed = mixed || grains.density != c.grains[populations.front()].density;
     const double weight = (grains.density - c.fluid.density) * g * grains.diameter;
     if (grains.density > (1.0 + neutral_density) * c.fluid.density)
       numbers.push_back({stress / weight, fmt::format("{:.3g} for grains.{} ({:g} kg/m^3, {:.4g} m)", stress / weight,
                                                       p, grains.density, grains.diameter)});
   }
-  if (!mixed || numbers.empty() || !std::isfinite(stress)) return;
+  if (!has_free_grains(c) || !mixed || numbers.empty() || !std::isfinite(stress)) return;
   const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end(),
                                                  [](const Own& a, const Own& b) { return a.shields < b.shields; });
   const ReferenceGrain reference = reference_grain(c);

@@ -114,10 +114,8 @@ Warnings early_averages(const Case& c) {
 // Water at rest that an inlet sets going in the first step is a water hammer.
 Warnings sudden_inlet(const Case& c) {
   const coupling::FaceKeys& inlet = c.domain.faces[x_low];
-  const bool has_free_grains =
-      std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return !grains.held(); });
   const bool at_rest = c.initial.fluid.count() == 0 && !c.initial.takes(InitialField::fluid);
-  if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains) return {};
+  if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains(c)) return {};
   std::vector<Advice> advice = developed_start(c, flow_estimate(c));
   const Vec3 v = inlet.velocity;
   const Change uniform = word_change("initial.fluid.uniform", fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()),

@@ -153,7 +153,7 @@ std::string closed_channel(const Case& c) {
   if (drives_flow(c, 0) && bed < c.domain.size.z() && !cells.opens_along_x(bed))
     return fmt::format("{} {} the channel, so that no water passes along x{}: consider {}.", the_solids(c),
                        verb(c, "block"), bed > 0.0 ? " above the bed" : "", remedy);
-  if (c.system == SystemKind::resolved && gravity_vector(c.gravity).z() < 0.0 && !free_populations(c).empty() &&
+  if (c.system == SystemKind::resolved && gravity_vector(c.gravity).z() < 0.0 && !c.grains.empty() &&
       lie_over_the_grains(c, cells))
     return fmt::format("{} {} all of the bed, so that the flow does not reach the grains beneath: consider {}.",
                        the_solids(c), verb(c, "cover"), remedy);
