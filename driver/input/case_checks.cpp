@@ -1,6 +1,7 @@
 #include "driver/input/case_checks.hpp"
 
 #include "core/base/schedule.hpp"
+#include "dem/motion/walls.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/grain_weight.hpp"
@@ -245,8 +246,7 @@ bool has_sink_at(const Case& c, std::size_t face) {
 
 // The key that a case gives a face by: its own, or that of its axis.
 std::string key_of_face(std::size_t face, const io::YamlDocument& document) {
-  const char* keys[] = {"x_low", "x_high", "y_low", "y_high", "bottom", "top"};
-  const std::string own = fmt::format("domain.boundaries.{}", keys[face]);
+  const std::string own = fmt::format("domain.boundaries.{}", dem::face_names[face]);
   return document.find(own) ? own : fmt::format("domain.boundaries.{}", axis_name[face / 2]);
 }
 

@@ -1,5 +1,6 @@
 #include "driver/plan/boundary_warnings.hpp"
 
+#include "dem/motion/walls.hpp"
 #include "driver/case/axes.hpp"
 
 #include <fmt/format.h>
@@ -51,11 +52,8 @@ std::string sucks(const Case& c, std::size_t face) {
 }  // namespace
 
 std::string face_key(const DomainCase& domain, std::size_t face) {
-  if (face == bottom) return "domain.boundaries.bottom";
-  if (face == top) return "domain.boundaries.top";
-  const std::string axis = fmt::format("domain.boundaries.{}", axis_name[face / 2]);
-  if (domain.faces[face] == domain.faces[opposite(face)]) return axis;
-  return axis + (face % 2 == 0 ? "_low" : "_high");
+  const bool by_axis = face < bottom && domain.faces[face] == domain.faces[opposite(face)];
+  return fmt::format("domain.boundaries.{}", by_axis ? axis_name[face / 2] : dem::face_names[face]);
 }
 
 Warnings swapped_floor(const Case& c) {
