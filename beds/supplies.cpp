@@ -18,9 +18,7 @@ namespace thalweg::beds {
 namespace {
 
 void check_region(const RegionKeys& region, const Vec3& box_size, const std::string& key) {
-  const bool inside = (region.lower.array() >= 0.0).all() && (region.upper.array() <= box_size.array()).all() &&
-                      (region.lower.array() <= region.upper.array()).all();
-  if (!inside)
+  if (!dem::Zone{region.lower, region.upper}.is_in(box_size))
     throw KeyError(
         key + ".upper",
         fmt::format("the region must lie in the box with lower below upper along every axis; give corners in "

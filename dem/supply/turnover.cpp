@@ -13,14 +13,10 @@ namespace thalweg::dem {
 namespace {
 
 constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step, of all supplies, and that return
-constexpr double rounding = 1e-9;         // of a count or mass that is due, and of the box
+constexpr double rounding = 1e-9;         // of a count or mass that is due
 
 void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& what) {
-  // A whole number of cells of a third of a millimetre is not quite the length that was asked for.
-  const Vec3 limit = (1.0 + rounding) * box.size;
-  const bool inside = (zone.lower.array() >= 0.0).all() && (zone.upper.array() <= limit.array()).all() &&
-                      (zone.lower.array() <= zone.upper.array()).all();
-  if (!inside)
+  if (!zone.is_in(box.size))
     throw InputError(
         fmt::format("The zone of {} does not lie in the box with its lower corner below the upper one.", what));
 }
