@@ -17,15 +17,6 @@ namespace thalweg::beds {
 
 namespace {
 
-void check_region(const RegionKeys& region, const Vec3& box_size, const std::string& key) {
-  if (!dem::Zone{region.lower, region.upper}.is_in(box_size))
-    throw KeyError(
-        key + ".upper",
-        fmt::format("the region must lie in the box with lower below upper along every axis; give corners in "
-                    "m between [0, 0, 0] and [{:g}, {:g}, {:g}]",
-                    box_size[0], box_size[1], box_size[2]));
-}
-
 // Disks stay in the middle of the box.
 dem::Zone zone_of(const RegionKeys& region, bool disks, const Vec3& box_size) {
   dem::Zone zone{region.lower, region.upper};
@@ -84,12 +75,12 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
     throw KeyError("population",
                    "its clumps are from a file and have no common shape; give the number of a population "
                    "with a shape, or of spheres");
-  check_region(supply.region, box_size, "region");
+  check(supply.region, box_size, "region", true);
 }
 
 void check(const SinkKeys& sink, const Vec3& box_size) {
-  check_region(sink.region, box_size, "region");
-  if (sink.recirculation) check_region(sink.recirculation->region, box_size, "recirculation.region");
+  check(sink.region, box_size, "region", true);
+  if (sink.recirculation) check(sink.recirculation->region, box_size, "recirculation.region", true);
 }
 
 double mean_mass(const Population& population) {

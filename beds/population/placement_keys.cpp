@@ -1,5 +1,10 @@
 #include "beds/population/placement_keys.hpp"
 
+#include "core/keys/key_error.hpp"
+#include "dem/supply/supply.hpp"
+
+#include <fmt/format.h>
+
 namespace thalweg::beds {
 
 void describe(SectionVisitor& visit, RegionKeys& region) {
@@ -44,6 +49,16 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
                 {.meaning = by_file ? "only the grains of the file with their centre in it"
                                     : "where the grains are put; default: the whole box",
                  .only_if = spread_out});
+}
+
+void check(const RegionKeys& region, const Vec3& box_size, const std::string& key, bool flat) {
+  if (!dem::Zone{region.lower, region.upper}.is_in(box_size) ||
+      !(flat || (region.lower.array() < region.upper.array()).all()))
+    throw KeyError(
+        key + ".upper",
+        fmt::format("the region must lie in the box with lower below upper along every axis; give corners in "
+                    "m between [0, 0, 0] and [{}, {}, {}]",
+                    box_size[0], box_size[1], box_size[2]));
 }
 
 }  // namespace thalweg::beds

@@ -37,4 +37,8 @@ struct PlacementKeys {
 void describe(SectionVisitor& visit, RegionKeys& region);
 void describe(SectionVisitor& visit, PlacementKeys& placement);
 
+// Throws KeyError where the region with this key is not in a box of this size (m), or its lower corner is above the
+// upper one; flat: it may be a face, a line or a point.
+void check(const RegionKeys& region, const Vec3& box_size, const std::string& key, bool flat);
+
 }  // namespace thalweg::beds

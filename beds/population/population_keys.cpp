@@ -2,6 +2,7 @@
 #include "beds/packing/packing.hpp"
 #include "beds/population/population.hpp"
 #include "core/keys/key_error.hpp"
+#include "dem/supply/supply.hpp"
 
 #include <fmt/format.h>
 
@@ -194,12 +195,6 @@ void describe(SectionVisitor& visit, PopulationKeys& grains) {
 
 namespace {
 
-bool inside(const Vec3& point, const Vec3& box_size) {
-  return (point.array() >= 0.0).all() && (point.array() <= box_size.array()).all();
-}
-
-std::string shown(const Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
-
 bool stays_in_plane(const dem::MotionKeys& motion) {
   const bool turns_in_it = !motion.rotation || (motion.rotation->axis.x() == 0.0 && motion.rotation->axis.z() == 0.0);
   return turns_in_it && motion.velocity.y() == 0.0 && (!motion.oscillation || motion.oscillation->amplitude.y() == 0.0);
@@ -210,20 +205,14 @@ bool stays_in_plane(const dem::MotionKeys& motion) {
 void check_placement(const Population& population, const Vec3& box_size, bool disks) {
   const PlacementKeys& placement = population.placement;
   for (std::size_t p = 0; p < placement.positions.size(); ++p)
-    if (!inside(placement.positions[p], box_size))
-      throw KeyError(
-          fmt::format("placement.positions.{}", p),
-          fmt::format("the grain is outside the box; give a point in m between [0, 0, 0] and {}", shown(box_size)));
+    if (!dem::Zone{Vec3::Zero(), box_size}.holds(placement.positions[p]))
+      throw KeyError(fmt::format("placement.positions.{}", p),
+                     fmt::format("the grain is outside the box; give a point in m between [0, 0, 0] and [{}, {}, {}]",
+                                 box_size[0], box_size[1], box_size[2]));
   if (!placement.region) return;
-  const RegionKeys& region = *placement.region;
-  const Vec3 extent = region.upper - region.lower;
-  if (!inside(region.lower, box_size) || !inside(region.upper, box_size) || !(extent.array() > 0.0).all())
-    throw KeyError("placement.region.upper",
-                   fmt::format("the region must lie in the box with lower below upper along every axis; give "
-                               "corners in m between [0, 0, 0] and {}",
-                               shown(box_size)));
+  check(*placement.region, box_size, "placement.region", false);
   if (placement.file || disks) return;
-  const double fraction = population.volume() / extent.prod();
+  const double fraction = population.volume() / (placement.region->upper - placement.region->lower).prod();
   if (fraction > densest_bed)
     throw KeyError("count",
                    fmt::format("{} grains do not fit in their region: they would fill {:.0f} % of it, and at "
