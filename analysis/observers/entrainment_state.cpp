@@ -83,7 +83,7 @@ bool Entrainment::load(ArchiveReader& archive) {
   if (!archive.has("entrainment/seen_step") && !archive.has("entrainment/grains")) return false;
   if (archive.integer_attribute("entrainment/seen_step") < 0) return true;  // before the first measurement
   if (!were_saved_with(archive, "entrainment", definitions())) return false;
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape("entrainment/grains")[0]));
+  homes_ = DistributionById::of_rows(communicator_, archive, "entrainment/grains");
   memory_.assign(homes_->size(), {});
   const auto rows = homes_->read<double>(archive, "entrainment/grains", memory_columns);
   std::int64_t watched = 0;

@@ -3,8 +3,6 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/whole_dataset.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -113,10 +111,7 @@ void GrainBook::load(ArchiveReader& archive, const std::string& group, std::int6
   last_time_ = archive.real_attribute(group + "/looked_last");
   last_speed_ = archive.real_attribute(group + "/largest_speed");
   if (!archive.has(group + "/grains")) return;
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(group + "/grains").at(0)));
-  if (homes_->count() < bodies)
-    throw damaged_dataset(group + "/grains",
-                          fmt::format("the file holds {} grains, but {} were there", homes_->count(), bodies));
+  homes_ = DistributionById::of_rows(communicator_, archive, group + "/grains", bodies);
   memory_.assign(homes_->size(), {});
   const auto rows = homes_->read<double>(archive, group + "/grains", columns);
   bool damaged = false;

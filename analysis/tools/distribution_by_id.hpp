@@ -11,6 +11,9 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/row_range.hpp"
 #include "core/parallel/wide_rows.hpp"
+#include "core/state/whole_dataset.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -30,6 +33,16 @@ public:
         rank_(thalweg::rank_of(communicator)),
         count_(count),
         share_(std::max<GlobalId>(1, (count + ranks_ - 1) / ranks_)) {}
+
+  // As many ids as the array at `path` has rows. fewest: bodies that an observer remembers. Throws DamagedFile if there
+  // are fewer rows. Collective.
+  static DistributionById of_rows(MPI_Comm communicator, ArchiveReader& archive, const std::string& path,
+                                  std::int64_t fewest = 0) {
+    const auto rows = static_cast<GlobalId>(archive.shape(path).at(0));
+    if (rows < fewest)
+      throw damaged_dataset(path, fmt::format("the file holds {} grains, but {} were measured", rows, fewest));
+    return {communicator, rows};
+  }
 
   // Adds ids up to count - 1; those that are stored here stay the first of size().
   void grow(GlobalId count) { count_ = std::max(count_, count); }

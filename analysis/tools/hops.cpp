@@ -4,8 +4,6 @@
 #include "core/state/whole_dataset.hpp"
 #include "core/sums/reproducible_sum.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -149,10 +147,7 @@ void Hops::load(ArchiveReader& archive, const std::string& group, std::int64_t b
   sum_of_times_ = archive.real_attribute(group + "/hops_sum_of_times");
   std::copy(counts->begin(), counts->begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
   std::copy(counts->begin() + static_cast<std::ptrdiff_t>(cells), counts->end(), times_.counts().begin());
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(grains).at(0)));
-  if (homes_->count() < bodies)
-    throw damaged_dataset(grains,
-                          fmt::format("the file holds {} grains, but {} were measured", homes_->count(), bodies));
+  homes_ = DistributionById::of_rows(communicator_, archive, grains, bodies);
   memory_.assign(homes_->size(), {});
   const auto rows = homes_->read<double>(archive, grains, columns);
   for (std::size_t m = 0; m < memory_.size(); ++m) {

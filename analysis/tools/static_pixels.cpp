@@ -153,7 +153,7 @@ bool StaticPixels::load(ArchiveReader& archive, const std::string& group) {
   columns_a_grain_ = archive.integer_attribute(group + "/columns_a_grain");
   if (archive.has(group + "/surface"))
     surface_ = read_whole<double>(archive, group + "/surface", {static_cast<std::uint64_t>(columns_)});
-  homes_.emplace(communicator_, static_cast<GlobalId>(archive.shape(rows).at(0)));
+  homes_ = DistributionById::of_rows(communicator_, archive, rows);
   // A grain covers at least two columns, and only as long as there has been no grain may there be no row.
   if (homes_->count() == 0 && columns_a_grain_ > 1) throw damaged_dataset(rows, "the file holds no values");
   const auto columns = static_cast<std::size_t>(columns_a_grain_), numbers = 1 + 2 * columns;
