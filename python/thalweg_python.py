@@ -1,5 +1,5 @@
 """Scripts import this first: it goes on in another Python where the one that was started lacks what they need, and
-prints the head of a script that has no options when it is asked for help.
+prints the head of a script that has no options when it is asked for help. Figures that they draw need no screen.
 
 The other Python is the interpreter named in the environment variable THALWEG_PYTHON, or Debian's own, whose packages
 scripts/setup installs; on the path there is often a first Python without them. Where there is none with them, it says
@@ -35,3 +35,4 @@ if "argparse" not in sys.modules and {"-h", "--help"} & set(sys.argv[1:]):
 if missing_modules():
     go_on_elsewhere(missing_modules())
 os.environ.pop(TRIED, None)
+os.environ["MPLBACKEND"] = "Agg"   # figures go into files; no screen is needed

@@ -36,8 +36,6 @@ def report(run):
 
 
 def draw(file, runs):
-    import matplotlib
-    matplotlib.use("Agg")
     from matplotlib import pyplot
     figure, (inside, rate) = pyplot.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
     for run, colour, name in zip(runs, ("#14496e", "#c0392b"), ("from too little", "from too much")):
