@@ -3,6 +3,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import colors
+from matplotlib.collections import EllipseCollection
 
 from thalweg.errors import RunFolderError
 
@@ -111,6 +112,15 @@ def flow_direction(run):
     faces = {face for axis in "xyz" for face in run.faces(axis)}
     driven = "gravity" not in run.case or run.gravity[0] > 0.0 or faces & {"moving", "velocity_inlet"}
     return ", flow to the right" if driven or (run.case.get("fluid") or {}).get("mean_velocity") else ""
+
+
+def draw_outlines(axes, position, radius, linewidth):
+    """Grains (m) as circles on axes for x and z in mm, as seen along +y."""
+    front_last = np.argsort(-position[:, 1])
+    size = 2e3 * radius[front_last]
+    axes.add_collection(EllipseCollection(
+        size, size, 0 * size, units="xy", offsets=1e3 * position[front_last][:, [0, 2]],
+        offset_transform=axes.transData, facecolor="#c9b48a", edgecolor="#6b5a36", linewidth=linewidth))
 
 
 def largest_speed_of(speed, diameter):

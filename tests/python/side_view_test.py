@@ -6,11 +6,23 @@ import numpy as np
 import made_up_folder  # noqa: F401 (where the package is)
 from types import SimpleNamespace
 
+from thalweg.plan_view import upper_sides
 from thalweg.side_view import Surface, front_grains, visible_grains, with_images_along_x
 from thalweg.visible_profiles import VisibleSums
 
 R = np.array([0.5, 0.5])
 SIZE = np.array([10.0, 4.0, 10.0])
+
+
+class UpperSides(unittest.TestCase):
+    def test_over_the_corner_of_a_periodic_box(self):
+        x, y = (np.arange(length / 0.5) * 0.5 for length in (10.0, 4.0))
+        found = upper_sides(np.array([[0.0, 4.0, 3.0], [0.0, 0.0, 2.9]]), np.array([0.8, 0.8]), x, y, (10.0, 4.0))
+        side, corner = np.sqrt(0.8**2 - 0.5**2), np.sqrt(0.8**2 - 2 * 0.5**2)
+        for place, height in ((0, 0), 0.8), ((1, 0), side), ((-1, 0), side), ((0, -1), side), ((-1, -1), corner):
+            self.assertAlmostEqual(found[place], 3.0 + height)
+        self.assertEqual(np.count_nonzero(found), 9)
+        self.assertEqual(np.count_nonzero(upper_sides(np.array([[0.0, 0.0, 3.0]]), [0.8], x, y)), 4)
 
 
 class FrontGrains(unittest.TestCase):

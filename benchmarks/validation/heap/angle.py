@@ -8,7 +8,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
 import numpy as np
+from matplotlib import pyplot
 
+from thalweg.drawing import draw_outlines
 from thalweg.run import read_bed
 
 PLATE = (0.006, 0.046)  # m: its ends; the crest is half-way between
@@ -43,19 +45,9 @@ def flanks(x, height):
 
 def draw(file, runs):
     """Side view of the first heap, with the lines fitted to all heaps."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    from matplotlib.collections import EllipseCollection
     bed = read_bed(runs[0] / "bed.h5")
-    place, radius = bed["position"], bed["radius"]
-    front_last = np.argsort(-place[:, 1])
-    x, z = (place[front_last, 0] - 0.5 * sum(PLATE)) * 1e3, (place[front_last, 2] - TOP) * 1e3
-    size = 2e3 * radius[front_last]
     figure, axes = pyplot.subplots(figsize=(8, 3.6), layout="constrained")
-    axes.add_collection(EllipseCollection(size, size, 0 * size, units="xy", offsets=np.column_stack([x, z]),
-                                          offset_transform=axes.transData, facecolor="#c9b48a", edgecolor="#6b5a36",
-                                          linewidth=0.3))
+    draw_outlines(axes, bed["position"] - [0.5 * sum(PLATE), 0.0, TOP], bed["radius"], linewidth=0.3)
     reach = np.array([0.0, 0.5e3 * (PLATE[1] - PLATE[0])])
     for run in runs:
         for side, slope, crest in flanks(*surface(run)[:2]):

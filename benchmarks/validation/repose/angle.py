@@ -8,7 +8,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
 import numpy as np
+from matplotlib import pyplot
 
+from thalweg.drawing import draw_outlines
+from thalweg.plan_view import upper_sides
 from thalweg.run import read_bed
 
 STEP, WIDTH = (0.08, 0.02), 0.030  # m: the upper edge of the step, and the period across
@@ -26,13 +29,7 @@ def spheres(run):
 def surface(run):
     """x and the height (m) of the upper sides of the grains above the edge of the step, mean across."""
     x, y = PIXEL * (np.arange(round(STEP[0] / PIXEL)) + 0.5), PIXEL * (np.arange(round(WIDTH / PIXEL)) + 0.5)
-    height = np.zeros((len(x), len(y)))
-    for centre, radius in zip(*spheres(run)):
-        across = (y - centre[1] + WIDTH / 2) % WIDTH - WIDTH / 2
-        inside = radius**2 - (x - centre[0])[:, None] ** 2 - across[None, :] ** 2
-        top = np.where(inside > 0, centre[2] + np.sqrt(np.maximum(inside, 0)), 0)
-        np.maximum(height, top, out=height)
-    return x, height.mean(axis=1) - STEP[1]
+    return x, upper_sides(*spheres(run), x, y, (None, WIDTH)).mean(axis=1) - STEP[1]
 
 
 def line(x, height):
@@ -42,18 +39,9 @@ def line(x, height):
 
 
 def draw(file, runs):
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    from matplotlib.collections import EllipseCollection
     figure, all_axes = pyplot.subplots(1, len(runs), figsize=(2.6 * len(runs), 2.7), layout="constrained", sharey=True)
     for axes, run in zip(np.atleast_1d(all_axes), runs):
-        place, radius = spheres(run)
-        front_last = np.argsort(-place[:, 1])
-        size = 2e3 * radius[front_last]
-        axes.add_collection(EllipseCollection(
-            size, size, 0 * size, units="xy", offsets=1e3 * place[front_last][:, [0, 2]],
-            offset_transform=axes.transData, facecolor="#c9b48a", edgecolor="#6b5a36", linewidth=0.2))
+        draw_outlines(axes, *spheres(run), linewidth=0.2)
         slope, crest = line(*surface(run))
         axes.plot([0, 1e3 * STEP[0]], 1e3 * (STEP[1] + crest + np.array([0, slope * STEP[0]])), color="#1f4e79")
         axes.fill_between([1e3 * STEP[0], 110], 0, 1e3 * STEP[1], color="0.4")

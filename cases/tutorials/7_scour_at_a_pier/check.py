@@ -6,14 +6,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 import pier
 from pier import RADIUS
 from thalweg.checks import check_main
+from thalweg.plan_view import upper_sides
 from thalweg.run import Run
 
 PIER = np.array([pier.X, pier.Y])                  # m
@@ -29,15 +28,8 @@ def grid_of(run):
 
 def surface_of(run, frame, x, y):
     """Height (m) of the upper sides of grains at rest as [y, x], on periodic axes."""
-    heights = np.zeros((len(y), len(x)))
-    for (px, py, pz), radius, velocity in zip(frame.position, frame.radius, frame.velocity):
-        if np.linalg.norm(velocity) > AT_REST:
-            continue
-        dx = (x - px + run.size[0] / 2) % run.size[0] - run.size[0] / 2
-        dy = (y - py + run.size[1] / 2) % run.size[1] - run.size[1] / 2
-        inside = radius ** 2 - dx[None, :] ** 2 - dy[:, None] ** 2
-        heights = np.where(inside > 0, np.maximum(heights, pz + np.sqrt(np.maximum(inside, 0))), heights)
-    return heights
+    bed = np.linalg.norm(frame.velocity, axis=1) <= AT_REST
+    return upper_sides(frame.position[bed], frame.radius[bed], x, y, run.size[:2]).T
 
 
 def depths_of(run):
