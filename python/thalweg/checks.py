@@ -1,4 +1,4 @@
-"""What the check scripts of the tutorials share: numbers beside what is expected of them and beside the literature."""
+"""What scripts share that check runs: numbers beside what is expected of them and beside the literature."""
 import argparse
 import sys
 from pathlib import Path
@@ -6,17 +6,27 @@ from pathlib import Path
 from thalweg.errors import RunFolderError
 
 
-class Checks:
-    """Prints each number; `failed` counts those that are not as expected."""
+class Verdict:
+    """Called with whether something is as it should be, says "pass" or "FAIL"; `failed` counts the latter."""
 
     def __init__(self):
         self.failed = 0
 
+    def __call__(self, good):
+        self.failed += not good
+        return "pass" if good else "FAIL"
+
+    @property
+    def exit_code(self):
+        return 1 if self.failed else 0
+
+
+class Checks(Verdict):
+    """Prints each number; `failed` counts those that are not as expected."""
+
     def expect(self, name, value, low, high, unit="1"):
         """A number that a run of the tutorial must bring between two bounds."""
-        good = low <= value <= high
-        self.failed += not good
-        print(f"{name}: {value:.4g} {unit}, expected {low:.4g} to {high:.4g}: {'pass' if good else 'FAIL'}")
+        print(f"{name}: {value:.4g} {unit}, expected {low:.4g} to {high:.4g}: {self(low <= value <= high)}")
 
     def compare(self, name, value, reference, source):
         """A number beside that of the literature; the difference is left to the reader's judgement."""
@@ -49,4 +59,4 @@ def check_main(description, check, folders, figure=False):
     except RunFolderError as error:
         print(f"check: {error}", file=sys.stderr)
         return 1
-    return 1 if checks.failed else 0
+    return checks.exit_code

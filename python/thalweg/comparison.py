@@ -1,7 +1,18 @@
 """Shared by scripts that compare runs with the literature: their table outlives the folders of the runs."""
 import argparse
+from pathlib import Path
 
 from thalweg.tables import merged_rows, read_rows
+
+
+def files_and_figure(description, files, figure):
+    """Paths and the name of the figure, from the command line FILES... [--figure FILE]. files: what they are called;
+    figure: the default."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("files", nargs="+", type=Path, metavar=files)
+    parser.add_argument("--figure", default=figure)
+    arguments = parser.parse_args()
+    return arguments.files, arguments.figure
 
 
 def compared_rows(description, table, figure, rows_of):

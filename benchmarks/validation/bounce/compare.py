@@ -6,7 +6,6 @@ the rebound velocity is that at the time when sound has gone around the sphere a
 27 steps at ten cells per diameter), before which the fluid has not responded to the reversal. Prints Stokes number,
 restitution over dry restitution, exp(-35/St), their difference, and pass or fail (0.1). Exit code 0 if all pass.
 """
-import argparse
 import math
 import sys
 from pathlib import Path
@@ -14,11 +13,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import thalweg
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 from thalweg.frames import trajectory
 from thalweg.rebound import impacts, settling_time
 
@@ -27,14 +26,11 @@ SLOWEST = 8.0             # Stokes number below which nothing rebounds and no im
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--figure", default="bounce.png")
-    arguments = parser.parse_args()
+    runs, figure_name = files_and_figure(__doc__, "RUN_FOLDER", "bounce.png")
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
-    passed, colours, shown = True, {}, set()
-    for run in arguments.runs:
+    verdict, colours, shown = Verdict(), {}, set()
+    for run in runs:
         folder = thalweg.Run(run)
         case = folder.case
         diameter, density = case["grains"][0]["diameter"], case["grains"][0]["density"]
@@ -51,10 +47,9 @@ def main():
             if stokes < SLOWEST:
                 break
             good = abs(ratio - reference) <= ACCEPTED
-            passed = passed and good
             print(f"{run.name}: impact {number + 1}, St {stokes:.1f}, {kind}: "
                   f"e/e_dry {ratio:.3f}, reference {reference:.3f}, difference {ratio - reference:+.3f}: "
-                  f"{'pass' if good else 'FAIL'}")
+                  f"{verdict(good)}")
             if not case["name"].startswith("Three"):
                 left.semilogx(stokes, ratio, "o", color=colour, label=None if kind in shown else kind)
                 shown.add(kind)
@@ -74,8 +69,8 @@ def main():
     if right.get_lines():
         right.legend(fontsize=8)
     figure.tight_layout()
-    figure.savefig(arguments.figure, dpi=100)
-    return 0 if passed else 1
+    figure.savefig(figure_name, dpi=100)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

@@ -15,11 +15,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
 from thalweg.random_array import RandomArray
@@ -57,17 +56,16 @@ def means(rows):
 
 
 def report(points):
-    passed = True
+    verdict = Verdict()
     for cells, collision, phi, reynolds, drag, error in points:
         laws = beetstra_drag(phi, reynolds), tenneti_drag(phi, reynolds)
         good = min(laws) * (1.0 - ACCEPTED) <= drag <= max(laws) * (1.0 + ACCEPTED)
-        passed = passed and good
         print(
             f"solid fraction {phi:.3f}, Re {reynolds:6.4g}, {cells:g} cells, {collision}: F {drag:.2f} +- {error:.2f};"
             f" Beetstra {laws[0]:.2f} ({100 * (drag / laws[0] - 1):+.0f} %), Tenneti"
-            f" {laws[1]:.2f} ({100 * (drag / laws[1] - 1):+.0f} %): {'pass' if good else 'FAIL'}"
+            f" {laws[1]:.2f} ({100 * (drag / laws[1] - 1):+.0f} %): {verdict(good)}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def draw(points, name):
@@ -92,9 +90,9 @@ def draw(points, name):
 def main():
     rows, figure_name = compared_rows(__doc__, HERE / "drag.csv", "drag_law.png", lambda folder: [measured(folder)])
     points = sorted(means(rows), key=lambda point: (round(point[2], 1), point[3]))
-    passed = report(points)
+    exit_code = report(points)
     draw(points, figure_name)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

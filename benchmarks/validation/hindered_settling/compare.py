@@ -15,12 +15,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run, mean_with_error
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.literature import settling_speed
 
@@ -66,7 +65,7 @@ def main():
     )
     table = np.array([[float(row[column]) for column in COLUMNS[1:]] for row in rows])
     figure, axes = plt.subplots(figsize=(6, 4.5), layout="constrained")
-    passed = True
+    verdict = Verdict()
     for reynolds, colour in zip(np.unique(np.round(table[:, 0], 3)), ("tab:blue", "tab:red", "k")):
         of_this = table[np.isclose(table[:, 0], reynolds, atol=1e-3)]
         of_this = of_this[np.argsort(of_this[:, 1])]
@@ -87,18 +86,17 @@ def main():
         (slope, intercept), covariance = np.polyfit(np.log(1.0 - phi), np.log(ratio), 1, cov=True)
         in_this_box = np.polyfit(np.log(1.0 - phi), np.log(ratio - missing), 1)[0]
         good = abs(slope - expected) <= ACCEPTED
-        passed = passed and good
         print(
             f"Re {reynolds:<6g} n {slope:.2f} +- {np.sqrt(covariance[0, 0]):.2f}, {np.exp(intercept):.2f} at phi -> 0"
             f" ({in_this_box:.2f} uncorrected); Richardson and Zaki {expected:.2f}, accepted +- {ACCEPTED}:"
-            f" {'pass' if good else 'FAIL'}"
+            f" {verdict(good)}"
         )
     axes.set(xlabel="solid fraction φ", ylabel="settling velocity over that of a single sphere", yscale="log")
     axes.grid(color="#e5e8ea", linewidth=0.8)
     axes.legend(fontsize=8)
     figure.savefig(figure_name, dpi=110)
     print(figure_name)
-    return 0 if passed else 1
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

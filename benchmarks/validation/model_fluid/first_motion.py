@@ -24,13 +24,12 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter
 from scipy.optimize import minimize
 
+from thalweg.checks import Verdict
 from thresholds import runs, thresholds
 
 ACCEPTED = 0.3   # of alpha
@@ -145,19 +144,18 @@ def fitted(ensembles, step, given=None, seed=1):
     return Fit(kept, left_out, *analysed(kept), *np.std(again, axis=0))
 
 
-def judged(system, fit):
+def judge(system, fit, verdict):
     """Whether alpha is that of the paper, and the slope of the mean -1/alpha."""
     good = abs(fit.alpha - system.alpha) <= ACCEPTED + fit.alpha_error
     print(
         f"{system.title}: alpha {fit.alpha:.2f} +- {fit.alpha_error:.2f}, paper {system.alpha}:"
-        f" {'pass' if good else 'FAIL'}"
+        f" {verdict(good)}"
     )
     if math.isnan(fit.slope):
-        return good
+        return
     straight = abs(fit.slope + 1.0 / fit.alpha) <= 2.0 * fit.slope_error
     print(f"{system.title}: slope {fit.slope:.3f} +- {fit.slope_error:.3f}, -1/alpha {-1 / fit.alpha:.3f}: "
-          f"{'pass' if straight else 'FAIL'}")
-    return good and straight
+          f"{verdict(straight)}")
 
 
 def draw(system, fit, left, right):
@@ -199,7 +197,7 @@ def main():
     figure, axes = plt.subplots(
         len(measured), 2, figsize=(10, 3.7 * len(measured)), layout="constrained", squeeze=False
     )
-    passed = True
+    verdict = Verdict()
     for (found, system), panels in zip(measured, axes):
         ensembles = [(length, middles) for length, middles in found if length >= arguments.shortest]
         for length, middles in ensembles:
@@ -213,13 +211,13 @@ def main():
             fitted(ensembles, system.step, system.theta_c).line(system.title, "Theta_c of the paper")
             fit = fitted(ensembles, system.step, threshold(system.row))
             fit.line(system.title, "Theta_c found here")
-        passed = judged(system, fit) and passed
+        judge(system, fit, verdict)
         draw(system, fit, *panels)
     for panel in axes.flat:
         panel.grid(color="#e5e8ea", linewidth=0.8)
     figure.savefig(arguments.figure, dpi=110)
     print(arguments.figure)
-    return 0 if passed else 1
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

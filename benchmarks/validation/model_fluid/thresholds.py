@@ -14,11 +14,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from thalweg.checks import Verdict
 from thalweg.tables import HEADING, read_rows
 
 LOW, HIGH = 0.28, 0.11                       # section III B: the plateaus at Re_* << 1 and Re_* >> 1
@@ -48,26 +47,19 @@ def runs(name):
     return read_rows(path) if path.exists() else []
 
 
-class Report:
-    def __init__(self):
-        self.passed = True
-
-    def verdict(self, good):
-        self.passed = self.passed and good
-        return "pass" if good else "FAIL"
-
+class Report(Verdict):
     def line(self, what, row, expected, accepted):
         """accepted: the distance from the expected value beyond half the bracket."""
         good = abs(row["shields_number"] - expected) <= accepted + row["half_width"]
         print(f"{what:<42} {row['shields_number']:.4f} +- {row['half_width']:.4f}   paper {expected:.4f}   "
-              f"accepted +- {accepted:.4f}   {self.verdict(good)}")
+              f"accepted +- {accepted:.4f}   {self(good)}")
 
     def bracket(self, what, lower, upper, expected, accepted):
         """A bracket too wide to be judged by its middle: all of it has to be accepted."""
         rounding = 1e-9   # 0.28 - 0.25 is a little above 0.03
         within = max(abs(lower - expected), abs(upper - expected)) <= accepted + rounding
         apart = upper <= expected - accepted + rounding or lower >= expected + accepted - rounding
-        verdict = self.verdict(within)
+        verdict = self(within)
         print(f"{what:<42} {lower:.4f} to {upper:.4f}    paper {expected:.4f}   accepted +- {accepted:.4f}   "
               f"{verdict if within or apart else 'UNDECIDED'}")
 
@@ -78,11 +70,11 @@ class Report:
         mean = np.mean(np.concatenate(groups))
         off = max(abs(np.mean(group) - mean) / standard_error(group) for group in groups)
         print(f"{what}: means of {len(groups)} kinds within {off:.1f} standard errors of all, accepted 2.6   "
-              f"{self.verdict(off <= 2.6)}")
+              f"{self(off <= 2.6)}")
 
     def below(self, what, threshold, limit):
         """threshold: an upper limit of it."""
-        print(f"{what:<42} below {threshold:.4f}     paper below {limit:.4f}   {self.verdict(threshold < limit)}")
+        print(f"{what:<42} below {threshold:.4f}     paper below {limit:.4f}   {self(threshold < limit)}")
 
 
 def standard_error(values):
@@ -213,7 +205,7 @@ def friction(axes, report, without):
         good = most <= FRICTION_ACCEPTED * least
         print(f"disks, Re_* {reynolds:g}: {least:.3f} to {most:.3f} with friction, {100 * (most / least - 1):.0f} % "
               f"(paper: less than 50 %; twice the value of spheres: {DISKS_FACTOR * plateau:.2f})   "
-              f"{report.verdict(good)}")
+              f"{report(good)}")
     friction_as_in_the_paper(axes, report)
     axes.set(xscale="log", xlabel="friction coefficient", ylim=(0.0, None), title="disks (dotted: twice the plateaus)")
 
@@ -234,7 +226,7 @@ def friction_as_in_the_paper(axes, report):
     above = max(row["lower"] for row in others)
     least = above / without[0]["upper"]
     most = max(row["upper"] for row in others) / without[0]["lower"]
-    verdict = "UNDECIDED" if least <= FRICTION_ACCEPTED < most else report.verdict(most <= FRICTION_ACCEPTED)
+    verdict = "UNDECIDED" if least <= FRICTION_ACCEPTED < most else report(most <= FRICTION_ACCEPTED)
     print(f"the same, as long as in the paper: {without[0]['lower']:.3f} to {without[0]['upper']:.3f} with friction "
           f"{without[0]['friction']:g}, more than {above:.3f} with friction: at least "
           f"+{100 * (least - 1):.0f} %   {verdict}")
@@ -257,7 +249,7 @@ def main():
             panel.legend(fontsize=8)
     figure.savefig(arguments.figure, dpi=110)
     print(arguments.figure)
-    return 0 if report.passed else 1
+    return report.exit_code
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ Prints for the first impact of every run: duration of the contact in fluid steps
 impact, restitution over dry restitution, exp(-35/St), and pass or fail (0.1). Velocities as in
 benchmarks/validation/bounce. Exit code 0 if all pass.
 """
-import argparse
 import math
 import sys
 from pathlib import Path
@@ -13,11 +12,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import thalweg
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 from thalweg.frames import trajectory
 from thalweg.rebound import impacts, settling_time
 
@@ -32,14 +31,11 @@ def contact_steps(case):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--figure", default="rebound_in_water.png")
-    arguments = parser.parse_args()
+    runs, figure_name = files_and_figure(__doc__, "RUN_FOLDER", "rebound_in_water.png")
 
     plt.figure(figsize=(7, 4))
-    passed = True
-    for run in arguments.runs:
+    verdict = Verdict()
+    for run in runs:
         folder = thalweg.Run(run)
         case = folder.case
         diameter, density = case["grains"][0]["diameter"], case["grains"][0]["density"]
@@ -52,23 +48,21 @@ def main():
         plt.plot(times, gaps, label=run.name)
         found = impacts(times, gaps, motions[:, 2], settling_time(case))
         if not found:
-            print(f"{run.name}: no impact before the run ended: FAIL")
-            passed = False
+            print(f"{run.name}: no impact before the run ended: {verdict(False)}")
             continue
         before, after = found[0]
         stokes = density * before * diameter / (9.0 * viscosity)
         ratio, reference = after / before / case["contact"]["restitution"], math.exp(-35.0 / stokes)
         good = abs(ratio - reference) <= ACCEPTED
-        passed = passed and good
         print(f"{run.name}: contact of {contact_steps(case):.1f} steps, {before:.3f} m/s, St {stokes:.0f}: "
               f"e/e_dry {ratio:.3f}, reference {reference:.3f}, difference {ratio - reference:+.3f}: "
-              f"{'pass' if good else 'FAIL'}")
+              f"{verdict(good)}")
     plt.xlabel("time [s]")
     plt.ylabel("gap [diameters]")
     plt.legend(fontsize=8)
     plt.tight_layout()
-    plt.savefig(arguments.figure, dpi=100)
-    return 0 if passed else 1
+    plt.savefig(figure_name, dpi=100)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 import thalweg
+from thalweg.checks import Verdict
 from thalweg.frames import trajectory
 
 ACCEPTED, MEASURED_AT = 0.1, 0.1  # difference; diameters
@@ -21,7 +22,7 @@ ACCEPTED, MEASURED_AT = 0.1, 0.1  # difference; diameters
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    passed = True
+    verdict = Verdict()
     for name in parser.parse_args().runs:
         run = thalweg.Run(name)
         grain, on_grain = run.case["grains"][0], len(run.case["grains"]) > 1
@@ -39,10 +40,9 @@ def main():
         stokes = mass * before / (6.0 * math.pi * viscosity * reduced ** 2)
         ratio, reference = after / before / run.case["contact"]["restitution"], math.exp(-35.0 / stokes)
         good = abs(ratio - reference) <= ACCEPTED
-        passed = passed and good
         print(f"{name.name}: {before:.4f} m/s, St {stokes:.0f}: e/e_dry {ratio:.3f}, reference {reference:.3f}, "
-              f"difference {ratio - reference:+.3f}: {'pass' if good else 'FAIL'}")
-    return 0 if passed else 1
+              f"difference {ratio - reference:+.3f}: {verdict(good)}")
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 Takes the torque from the last checkpoint of every run, divides it by Stokes' in the periodic box, prints the difference
 and pass or fail (3 %). Exit code 0 if all pass.
 """
-import argparse
 import math
 import sys
 from pathlib import Path
@@ -13,11 +12,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
 import h5py
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import thalweg
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 
 ACCEPTED = 0.03
 OF_THE_PAPER = 0.11
@@ -38,18 +37,14 @@ def torque_ratio(run):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--figure", default="rotate.png")
-    arguments = parser.parse_args()
+    runs, figure_name = files_and_figure(__doc__, "RUN_FOLDER", "rotate.png")
 
-    curves, passed = {}, True
-    for run in arguments.runs:
+    curves, verdict = {}, Verdict()
+    for run in runs:
         collision, omega, ratio = torque_ratio(run)
         good = abs(ratio - 1.0) <= ACCEPTED
-        passed = passed and good
         print(f"{run.name}: {collision}, {omega:g} rad/s: torque {ratio:.4f} of Stokes' in this box, difference "
-              f"{100 * (ratio - 1):+.2f} %: {'pass' if good else 'FAIL'}")
+              f"{100 * (ratio - 1):+.2f} %: {verdict(good)}")
         curves.setdefault(collision, []).append((omega, ratio))
 
     plt.figure(figsize=(6, 3.5))
@@ -63,8 +58,8 @@ def main():
     plt.legend(loc="upper left", ncol=2, fontsize=8)
     plt.ylim(0.85, 1.2)
     plt.tight_layout()
-    plt.savefig(arguments.figure, dpi=110)
-    return 0 if passed else 1
+    plt.savefig(figure_name, dpi=110)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

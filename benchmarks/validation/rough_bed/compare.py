@@ -12,12 +12,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.literature import SPHERE_CHANNEL_MEAN
 from thalweg.rough_bed import rough_flow, roughness_of
@@ -43,20 +42,19 @@ def measured(folder):
 
 
 def report(rows):
-    passed = True
+    verdict = Verdict()
     for row in rows:
         model = row["subgrid_model"]
         v = {column: float(row[column]) for column in COLUMNS[1:] if column != "subgrid_model"}
         difference = v["mean_velocity [u*]"] / SPHERE_CHANNEL_MEAN - 1.0
         good = abs(difference) <= ACCEPTED
-        passed = passed and good
         print(
             f"{row['run']}: {v['cells [1]']:.3g} cells, {model if model.isalpha() else 'C_s ' + model}, mean velocity"
             f" {v['mean_velocity [u*]']:.2f} +- {v['error [u*]']:.2f} u* (reference {SPHERE_CHANNEL_MEAN:.2f},"
             f" {100 * difference:+.0f} %), k_s {v['roughness [d]']:.2f} d"
-            f" ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): {'pass' if good else 'FAIL'}"
+            f" ({roughness_of(SPHERE_CHANNEL_MEAN, v['depth [d]']):.2f}): {verdict(good)}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def draw(rows, name):
@@ -82,9 +80,9 @@ def main():
     rows, figure = compared_rows(
         __doc__, HERE / "rough_bed.csv", HERE / "rough_bed.png", lambda folder: [measured(folder)]
     )
-    passed = report(rows)
+    exit_code = report(rows)
     draw(rows, figure)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

@@ -14,12 +14,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import brentq
 
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.literature import beetstra_drag, tenneti_drag
 from thalweg.random_array import RandomArray
@@ -61,16 +60,15 @@ def means(rows):
 
 
 def report(points):
-    passed = True
+    verdict = Verdict()
     for cells, method, arrays, by_beetstra, by_tenneti in points:
         # Nearly linear at these Reynolds numbers: a drag higher by a tenth is a speed lower by as much.
         good = min(by_beetstra, by_tenneti) <= 1.0 + ACCEPTED and max(by_beetstra, by_tenneti) >= 1.0 - ACCEPTED
-        passed = passed and good
         print(
             f"{cells:g} cells, {method}, arrays: {arrays}: speed {by_beetstra:.3f} of Beetstra's, {by_tenneti:.3f} of"
-            f" Tenneti's: {'pass' if good else 'FAIL'}"
+            f" Tenneti's: {verdict(good)}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def draw(points, name):
@@ -89,9 +87,9 @@ def draw(points, name):
 def main():
     rows, figure_name = compared_rows(__doc__, HERE / "seepage.csv", "seepage.png", lambda folder: [measured(folder)])
     points = list(means(rows))
-    passed = report(points)
+    exit_code = report(points)
     draw(points, figure_name)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

@@ -4,18 +4,17 @@
 Prints for every run the largest settling velocity, the measured one, their difference, and pass or fail (2 %); draws
 velocity and height against time. Exit code 0 if all pass.
 """
-import argparse
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import thalweg
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 from thalweg.frames import trajectory
 from thalweg.tables import read_rows
 
@@ -24,28 +23,24 @@ RADIUS = 7.5e-3   # m
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", metavar="CASE=RUN_FOLDER")
-    parser.add_argument("--figure", default="settle.png")
-    arguments = parser.parse_args()
+    runs, figure_name = files_and_figure(__doc__, "CASE=RUN_FOLDER", "settle.png")
 
     rows = read_rows(Path(__file__).with_name("reference.csv"))
     measured = {row["case"]: float(row["u_inf [m/s]"]) * float(row["u_max_over_u_inf [1]"]) for row in rows}
 
     figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(7, 6))
-    passed = True
-    for run in arguments.runs:
-        name, folder = run.split("=", 1)
+    verdict = Verdict()
+    for run in runs:
+        name, folder = str(run).split("=", 1)
         case = name.split("_")[0]
         times, positions, motions = trajectory(thalweg.Run(folder).grains)
         heights, velocities = positions[:, 2], motions[:, 2]
         fastest = -min(velocities)
         difference = fastest / measured[case] - 1.0
         good = abs(difference) <= ACCEPTED
-        passed = passed and good
         print(
             f"{name}: u_max {fastest:.5f} m/s, measured {measured[case]:.5f} m/s, difference {100 * difference:+.1f} %:"
-            f" {'pass' if good else 'FAIL'}"
+            f" {verdict(good)}"
         )
         line, = top.plot(times, velocities, label=name)
         top.axhline(-measured[case], color=line.get_color(), linestyle="--", linewidth=0.8)
@@ -55,8 +50,8 @@ def main():
     bottom.set_ylabel("lowest point above the floor [mm]")
     bottom.set_xlabel("time [s]")
     figure.tight_layout()
-    figure.savefig(arguments.figure, dpi=110)
-    return 0 if passed else 1
+    figure.savefig(figure_name, dpi=110)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

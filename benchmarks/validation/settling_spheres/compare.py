@@ -17,12 +17,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.means import mean_with_error
 from thalweg.tables import read_rows
@@ -73,13 +72,12 @@ def path(row):
 
 
 def report(rows, references):
-    passed = True
+    verdict = Verdict()
     for row in sorted(rows, key=lambda row: (float(row["galileo_number [1]"]), float(row["cells [1]"]))):
         reference = nearest(references, row)
-        reynolds, expected, verdict = reynolds_number(row, reference), float(reference["reynolds_number [1]"]), ""
+        reynolds, expected, said = reynolds_number(row, reference), float(reference["reynolds_number [1]"]), ""
         if float(row["cells [1]"]) >= BOUND_FROM:
-            good = abs(reynolds / expected - 1.0) <= ACCEPTED
-            passed, verdict = passed and good, ": pass" if good else ": FAIL"
+            said = f": {verdict(abs(reynolds / expected - 1.0) <= ACCEPTED)}"
         vertical, horizontal = float(row["vertical_velocity [u_ref]"]), float(row["horizontal_velocity [u_ref]"])
         angle, error, deviation = np.degrees(np.arctan(horizontal / vertical)), *(
             float(row[name]) for name in COLUMNS[7:9]
@@ -88,9 +86,9 @@ def report(rows, references):
             f"{row['run']}: {row['cells [1]']} cells, {row['collision']}: Re {reynolds:.1f}, reference {expected:.1f},"
             f" {100 * (reynolds / expected - 1):+.1f} %; vertical {vertical:.3f} +- {error:.3f}, deviation"
             f" {deviation:.3f}, horizontal {horizontal:.3f}, {angle:.1f} degrees,"
-            f" {path(row)} ({reference['regime']}){verdict}"
+            f" {path(row)} ({reference['regime']}){said}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def nearest(references, row):
@@ -129,11 +127,11 @@ def main():
     rows, figure = compared_rows(__doc__, HERE / "velocities.csv", "settling_spheres.png",
                                  lambda folder: [measured(folder)])
     references = read_rows(HERE / "reference.csv")
-    passed = report(rows, references)
+    exit_code = report(rows, references)
     folders = [argument for argument in sys.argv[1:] if (Path(argument) / "tracks.h5").exists()]
     if folders:
         draw(folders, references, figure)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

@@ -15,12 +15,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run, mean_with_error
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.rheology import flow_state, mixed_fraction, mixed_friction, solid_stress
 
@@ -93,7 +92,7 @@ def boyer_friction(viscous_number):
 
 
 def report(rows):
-    passed = True
+    verdict = Verdict()
     for row in sorted(rows, key=lambda row: float(row["solid_fraction [1]"])):
         v = {column: float(row[column]) for column in COLUMNS[4:]}
         phi, mixed = v["solid_fraction [1]"], v["mixed_number [1]"]
@@ -105,7 +104,6 @@ def report(rows):
         good = abs(mu / rule - 1.0) <= ACCEPTED_FRICTION and abs(phi - mixed_fraction(mixed)) <= ACCEPTED_FRACTION
         if phi < 0.06:
             good = abs(relative / batchelor(phi) - 1.0) <= ACCEPTED_DILUTE
-        passed = passed and good
         print(
             f"{row['run']}: solid fraction {phi:.3f}, I_m {mixed:.3g} (eq. 21: {mixed_fraction(mixed):.3f}), mu"
             f" {mu:.3f} (eq. 20: {rule:.3f}, {100 * (mu / rule - 1):+.0f} %), over the normal stress"
@@ -113,9 +111,9 @@ def report(rows):
             f" {relative * v['error [1]']:.3f} (Batchelor {batchelor(phi):.3f}, Boyer"
             f" {boyer(phi) if phi < 0.58 else np.nan:.3g}), contacts"
             f" {100 * v['contact_stress [Pa]'] / v['total_stress [Pa]']:.0f} %, stress over the height"
-            f" {100 * v['total_spread [1]']:.1f} %: {'pass' if good else 'FAIL'}"
+            f" {100 * v['total_spread [1]']:.1f} %: {verdict(good)}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def kind_of(row):
@@ -160,9 +158,9 @@ def main():
     rows, figure_name = compared_rows(
         __doc__, HERE / "rheology.csv", "shear_cell.png", lambda folder: [measured(folder)]
     )
-    passed = report(rows)
+    exit_code = report(rows)
     draw(rows, figure_name)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

@@ -4,18 +4,17 @@
 Prints the spin over the shear rate at the end of every run, the reference, their difference, and pass or fail (3 %);
 draws the spin against time. Exit code 0 if all pass.
 """
-import argparse
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 import thalweg
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 
 ACCEPTED = 0.03
 
@@ -27,14 +26,11 @@ def spins(run):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    parser.add_argument("--figure", default="shear_spin.png")
-    arguments = parser.parse_args()
+    runs, figure_name = files_and_figure(__doc__, "RUN_FOLDER", "shear_spin.png")
 
     plt.figure(figsize=(6, 3.5))
-    passed = True
-    for run in arguments.runs:
+    verdict = Verdict()
+    for run in runs:
         folder = thalweg.Run(run)
         case = folder.case
         top, bottom = (case["domain"]["boundaries"][face]["velocity"][0] for face in ("top", "bottom"))
@@ -45,10 +41,9 @@ def main():
         times, values = spins(folder)
         ratio = values[-1] / rate
         good = abs(ratio / reference - 1.0) <= ACCEPTED
-        passed = passed and good
         print(
             f"{run.name}: Reynolds number {reynolds:.3g}, spin {ratio:.4f} of the shear rate, reference"
-            f" {reference:.4f}, difference {100 * (ratio / reference - 1):+.2f} %: {'pass' if good else 'FAIL'}"
+            f" {reference:.4f}, difference {100 * (ratio / reference - 1):+.2f} %: {verdict(good)}"
         )
         plt.plot(times, [v / rate for v in values], label=f"Re {reynolds:.2g}")
     plt.axhline(0.5, color="k", linestyle=":", label="Jeffery 1922")
@@ -57,8 +52,8 @@ def main():
     plt.ylim(0, 0.6)
     plt.legend(loc="lower right")
     plt.tight_layout()
-    plt.savefig(arguments.figure, dpi=110)
-    return 0 if passed else 1
+    plt.savefig(figure_name, dpi=110)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

@@ -5,47 +5,41 @@ Takes the tables that run.py writes, prints for every link rule, solid fraction 
 positions relative to the cells, the reference, the difference, the spread over the positions, and pass or fail (5 % at
 ten or more cells per diameter), and draws the convergence. Exit code 0 if all pass.
 """
-import argparse
 import sys
-from pathlib import Path
 
 from arrays import reference_drags
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from thalweg.checks import Verdict
+from thalweg.comparison import files_and_figure
 from thalweg.tables import read_rows
 
 ACCEPTED, FROM_CELLS = 0.05, 10.0
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tables", nargs="+", type=Path, metavar="DRAG_CSV")
-    parser.add_argument("--figure", default="simple_cubic_arrays.png")
-    arguments = parser.parse_args()
+    tables, figure_name = files_and_figure(__doc__, "DRAG_CSV", "simple_cubic_arrays.png")
 
     reference, drags = reference_drags(), {}
-    for table in arguments.tables:
+    for table in tables:
         for row in read_rows(table):
             group = drags.setdefault((row["links"], row["solid_fraction [1]"]), {})
             group.setdefault(float(row["diameter [cells]"]), []).append(float(row["drag [1]"]))
 
     plt.figure(figsize=(6, 4))
-    passed = True
+    verdict = Verdict()
     for (links, fraction), group in drags.items():
         exact, points = reference[fraction], []
         for diameter, values in sorted(group.items()):
             error = sum(values) / len(values) / exact - 1.0
             spread = (max(values) - min(values)) / exact
             good = diameter < FROM_CELLS or abs(error) <= ACCEPTED
-            passed = passed and good
             points.append((diameter, 100.0 * abs(error)))
             print(
                 f"{links}, solid fraction {fraction}, {diameter:.1f} cells: drag {exact * (1 + error):.3f}, reference"
                 f" {exact}, difference {100 * error:+.2f} %, {len(values)} places {100 * spread:.2f} % apart:"
-                f" {'pass' if good else 'FAIL'}"
+                f" {verdict(good)}"
             )
         plt.loglog(*zip(*points), "o-", label=f"{links}, {fraction}")
     plt.loglog([6, 20], [6, 6 * 6 / 20], "k:", label="first order")
@@ -56,8 +50,8 @@ def main():
     plt.ylabel("drag: difference from Zick and Homsy [%]")
     plt.legend(fontsize=8)
     plt.tight_layout()
-    plt.savefig(arguments.figure, dpi=110)
-    return 0 if passed else 1
+    plt.savefig(figure_name, dpi=110)
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

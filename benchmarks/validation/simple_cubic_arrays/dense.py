@@ -13,6 +13,7 @@ from pathlib import Path
 
 from arrays import overrides, reference_drags, run_array
 
+from thalweg.checks import Verdict
 from thalweg.tables import read_rows
 
 CELLS = {
@@ -48,19 +49,18 @@ def report(table):
     drags = {}
     for row in read_rows(table):
         drags.setdefault(setting(row), []).append(float(row["drag [1]"]))
-    passed = True
+    verdict = Verdict()
     for (links, collision, tau, fraction), values in sorted(drags.items()):
         error = sum(values) / len(values) / exact[fraction] - 1.0
         spread = (max(values) - min(values)) / exact[fraction]
-        verdict = ""
+        said = ""
         if (links, collision) == ("cli", "trt"):
-            good = abs(error) <= ACCEPTED
-            passed, verdict = passed and good, ": pass" if good else ": FAIL"
+            said = f": {verdict(abs(error) <= ACCEPTED)}"
         print(
             f"{links} {collision}, tau {tau}, solid fraction {fraction}: {100 * error:+.1f} %, places"
-            f" {100 * spread:.1f} % apart{verdict}"
+            f" {100 * spread:.1f} % apart{said}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def main():
@@ -75,7 +75,7 @@ def main():
     if not table.exists():
         table.write_text(",".join(HEADINGS) + "\n", encoding="utf-8")
     run_missing(arguments.thalweg, table, arguments.collision, arguments.tau)
-    return 0 if report(table) else 1
+    return report(table)
 
 
 if __name__ == "__main__":

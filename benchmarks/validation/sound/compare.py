@@ -14,12 +14,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 import thalweg
+from thalweg.checks import Verdict
 from thalweg.tables import read_rows
 
 ACCEPTED = 0.02  # of speed and damping, where the wave is slower than the stress: w tau_b < 1
@@ -37,7 +36,7 @@ def theory(k, tau, tau_b):
 def compare_waves(file, figure):
     rows = read_rows(file)
     plt.figure(figsize=(6, 4))
-    passed = True
+    verdict = Verdict()
     for collision in ("bgk", "trt"):
         worst_speed = worst_damping = 0.0
         for row in (r for r in rows if r["collision"] == collision):
@@ -48,9 +47,8 @@ def compare_waves(file, figure):
             worst_speed = max(worst_speed, abs(float(row["speed"]) * k / s.imag - 1))
             worst_damping = max(worst_damping, abs(float(row["damping"]) / -s.real - 1))
         good = max(worst_speed, worst_damping) <= ACCEPTED
-        passed = passed and good
         print(f"{collision}: speed within {100 * worst_speed:.2f} %, damping within {100 * worst_damping:.2f} % where "
-              f"w tau_b < 1: {'pass' if good else 'FAIL'}")
+              f"w tau_b < 1: {verdict(good)}")
     times = np.geomspace(0.51, 300, 200)
     for cells, colour in ((96, "C0"), (384, "C1")):
         k = 2 * np.pi / cells
@@ -65,7 +63,7 @@ def compare_waves(file, figure):
     plt.legend(fontsize=8)
     plt.tight_layout()
     plt.savefig(figure, dpi=110)
-    return 0 if passed else 1
+    return verdict.exit_code
 
 
 def velocity_of(run):

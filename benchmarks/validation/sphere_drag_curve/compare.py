@@ -15,12 +15,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "python"))
 import thalweg_python
 
-import matplotlib
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run
+from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.means import mean_with_error
 
@@ -64,19 +63,18 @@ def measured(folder):
 
 
 def report(rows):
-    passed = True
+    verdict = Verdict()
     for row in sorted(rows, key=lambda row: (row["kind"], float(row["reynolds_number [1]"]))):
         reynolds, drag, error = (float(row[name]) for name in COLUMNS[5:8])
-        difference, verdict = drag / standard_drag(reynolds) - 1.0, ""
+        difference, said = drag / standard_drag(reynolds) - 1.0, ""
         if float(row["cells [1]"]) >= BOUND_FROM:
-            good = abs(difference) <= ACCEPTED
-            passed, verdict = passed and good, ": pass" if good else ": FAIL"
+            said = f": {verdict(abs(difference) <= ACCEPTED)}"
         print(
             f"{row['run']}: {row['kind']}, {row['cells [1]']} cells, Re {reynolds:.0f}: drag coefficient {drag:.3f} +-"
             f" {error:.3f} ({float(row['independent [1]']):.0f} independent values, over {row['averaged [d]']} d),"
-            f" standard {standard_drag(reynolds):.3f}, {100 * difference:+.1f} %{verdict}"
+            f" standard {standard_drag(reynolds):.3f}, {100 * difference:+.1f} %{said}"
         )
-    return passed
+    return verdict.exit_code
 
 
 def figure(rows, path):
@@ -107,9 +105,9 @@ def figure(rows, path):
 
 def main():
     rows, name = compared_rows(__doc__, HERE / "drag.csv", "sphere_drag_curve.png", lambda folder: [measured(folder)])
-    passed = report(rows)
+    exit_code = report(rows)
     figure(rows, name)
-    return 0 if passed else 1
+    return exit_code
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ import thalweg_python
 import numpy as np
 
 import thalweg
+from thalweg.checks import Verdict
 
 GRAVITY = 9.81                   # m/s^2
 STEADY = 0.2                     # s, from when on the turn counts
@@ -187,7 +188,7 @@ def turning(run):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN_FOLDER")
-    passed = True
+    verdict = Verdict()
     for folder in parser.parse_args().runs:
         run = thalweg.Run(folder)
         grain = run.case["grains"][0]
@@ -195,10 +196,9 @@ def main():
                     settling if grain["density"] > run.case["fluid"]["density"] else turning)
         name, value, reference, accepted, more = compared(run)
         good = abs(value / reference - 1.0) <= accepted
-        passed = passed and good
         print(f"{folder.name}: {name} {value:.4g}, reference {reference:.4g}, {100 * (value / reference - 1):+.2f} %:"
-              f" {'pass' if good else 'FAIL'} ({more})")
-    return 0 if passed else 1
+              f" {verdict(good)} ({more})")
+    return verdict.exit_code
 
 
 if __name__ == "__main__":
