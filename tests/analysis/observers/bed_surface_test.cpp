@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 namespace thalweg::analysis::bed_surface_test {
@@ -27,33 +28,19 @@ public:
 
   PeriodicBox box() const { return decomposition_.box(); }
 
+  // Until the next call.
   Snapshot at(std::int64_t step, const std::vector<Vec3>& positions) {
-    id_.clear(), radius_.clear(), position_.clear();
-    for (std::size_t n = positions.size(); n-- > 0;) {
-      if ((static_cast<std::int64_t>(3 * n) + step) % size_of(communicator_) != rank_of(communicator_)) continue;
-      id_.push_back(static_cast<GlobalId>(n));
-      radius_.push_back(0.5 * d);
-      position_.push_back(box().wrapped(positions[n]));
-    }
-    velocity_.assign(id_.size(), Vec3::Zero());
-    Snapshot snapshot;
-    snapshot.step = step;
-    snapshot.time = 0.125 * static_cast<double>(step);
-    snapshot.decomposition = &decomposition_;
-    snapshot.grains.global_count = static_cast<std::int64_t>(positions.size());
-    snapshot.grains.id = id_;
-    snapshot.grains.radius = radius_;
-    snapshot.grains.position = position_;
-    snapshot.grains.velocity = velocity_;
-    return snapshot;
+    const auto grain = [&](GlobalId id) {
+      return MadeUpGrain{.radius = 0.5 * d, .position = positions[static_cast<std::size_t>(id)]};
+    };
+    grains_.emplace(communicator_, static_cast<GlobalId>(positions.size()), grain, step, decomposition_);
+    return grains_->snapshot(0.125 * static_cast<double>(step), 0.125);
   }
 
 private:
   MPI_Comm communicator_;
   Decomposition decomposition_;
-  std::vector<GlobalId> id_;
-  std::vector<double> radius_;
-  std::vector<Vec3> position_, velocity_;
+  std::optional<MadeUpGrains> grains_;
 };
 
 std::vector<Vec3> cubic_lattice(int layers) {

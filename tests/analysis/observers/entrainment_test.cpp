@@ -2,9 +2,9 @@
 // after a restart.
 #include "analysis/observers/entrainment.hpp"
 
-#include "core/parallel/decomposition.hpp"
 #include "tests/analysis/made_up_grains.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/named_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -113,8 +113,7 @@ private:
   }
 
   bool twins_;
-  static Decomposition whole_box() { return {{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}}; }
-  Decomposition decomposition_ = whole_box();
+  Decomposition decomposition_ = made_up_box();
   std::vector<GlobalId> id_, clump_;
   std::vector<double> radii_, masses_;
   std::vector<Vec3> position_, velocity_, spin_, force_, couple_, contact_;
@@ -136,11 +135,7 @@ EntrainmentSettings settings(std::vector<GlobalId> grains) {
   return s;
 }
 
-const Profile& array_of(const Event& event, const std::string& name) {
-  for (const Profile& array : event.arrays)
-    if (array.name == name) return array;
-  throw std::out_of_range(name);
-}
+using test::named;
 
 // Five grains of the top layer move, one of which is held.
 TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
@@ -171,12 +166,12 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   EXPECT_NEAR(value_of(second.diagnostics, "onset_time"), 0.70, 1e-12);
   EXPECT_NEAR(value_of(second.diagnostics, "couple_share"), Bed::share(4), 1e-14);
   EXPECT_TRUE(std::isnan(value_of(second.diagnostics, "largest_torque_ratio")));  // the hinge is below the centre
-  const Profile& time = array_of(second, "time");
+  const Profile& time = named(second.arrays, "time");
   ASSERT_EQ(time.values.size(), 11u);  // 0.1 s
   EXPECT_NEAR(time.values.front(), 0.66, 1e-12);
-  EXPECT_NEAR(array_of(second, "position").values[30], 19.8 + 0.11, 1e-12);
-  EXPECT_NEAR(array_of(records.events[3], "position").values[30], 19.91, 1e-12);
-  EXPECT_EQ(array_of(second, "contact_point").shape[0], 22u);
+  EXPECT_NEAR(named(second.arrays, "position").values[30], 19.8 + 0.11, 1e-12);
+  EXPECT_NEAR(named(records.events[3].arrays, "position").values[30], 19.91, 1e-12);
+  EXPECT_EQ(named(second.arrays, "contact_point").shape[0], 22u);
 }
 
 EntrainmentSettings settings_of_twins() {
@@ -203,11 +198,11 @@ TEST(Entrainment, OfClumpsTakesTheWholeAndAllItsContacts) {
   EXPECT_EQ(clump.numbers.at(0).values.at(0), 58);
   for (const char* name : {"position", "fluid_force", "fluid_couple", "contact_force", "hinge_points", "hinge_axis",
                            "fluid_torque", "couple_torque", "critical_torque"}) {
-    const std::vector<double>&expected = array_of(sphere, name).values, &found = array_of(clump, name).values;
+    const std::vector<double>&expected = named(sphere.arrays, name).values, &found = named(clump.arrays, name).values;
     ASSERT_EQ(found.size(), expected.size()) << name;
     for (std::size_t v = 0; v < found.size(); ++v) EXPECT_NEAR(found[v], expected[v], 1e-12) << name;
   }
-  EXPECT_EQ(array_of(clump, "contact_point").shape[0], 22u);
+  EXPECT_EQ(named(clump.arrays, "contact_point").shape[0], 22u);
   EXPECT_EQ(clump.numbers.back().name, "contact_member");
 }
 
@@ -222,7 +217,7 @@ TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
   EXPECT_EQ(value_of(observer.diagnostics(), "entrainments"), 1.0);
   const Records records = observer.take_records();
   if (rank_of(MPI_COMM_WORLD) != 0) return;
-  const std::vector<double>& position = array_of(records.events.at(0), "position").values;
+  const std::vector<double>& position = named(records.events.at(0).arrays, "position").values;
   EXPECT_NEAR(position[position.size() - 3], 20.01, 1e-12);  // 0.21 m from 19.8 m
 }
 

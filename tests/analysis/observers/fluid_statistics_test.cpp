@@ -3,6 +3,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/sum_range.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/named_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,11 +63,7 @@ struct Bench {
   FluidStatistics statistics;
 };
 
-const Profile& named(const std::vector<Profile>& profiles, const std::string& name) {
-  for (const Profile& profile : profiles)
-    if (profile.name == name) return profile;
-  throw std::out_of_range(name);
-}
+using test::named;
 
 // Means over steps 10 to 30 and the cells that `in` accepts, in extended precision.
 struct Plain {

@@ -9,33 +9,18 @@ namespace {
 
 // Two populations dealt out to the ranks: forces and torques with small whole numbers, so that sums are exact.
 TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
-  const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});  // 20 x 10 x 5 m
-  std::vector<GlobalId> id;
-  std::vector<Vec3> position, force, torque, fluid_force, fluid_torque;
-  const auto add = [&](GlobalId grain, const Vec3& x) {
-    if (grain % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) return;
-    id.push_back(grain);
-    position.push_back(x);
-    force.push_back(Vec3(0.0, 0.0, 2.0));
-    torque.push_back(Vec3(0.0, 1.0, 0.0));
-    fluid_force.push_back(Vec3(static_cast<double>(grain), 0.0, 0.0));
-    fluid_torque.push_back(Vec3::Zero());
-  };
-  add(0, Vec3(1.0, 5.0, 2.0));
-  add(1, Vec3(19.0, 5.0, 2.0));  // one metre beyond the face: arm -2 from x = 1
-  add(2, Vec3(4.0, 6.0, 3.0));
-  Snapshot snapshot;
-  snapshot.time = 3.0;
-  snapshot.decomposition = &decomposition;
-  snapshot.grains.global_count = 3;
-  snapshot.grains.id = id;
-  snapshot.grains.position = position;
-  snapshot.grains.contact_force = force;
-  snapshot.grains.contact_torque = torque;
-  snapshot.grains.fluid_force = fluid_force;
-  snapshot.grains.fluid_torque = fluid_torque;
+  const std::vector<Vec3> places{Vec3(1.0, 5.0, 2.0), Vec3(19.0, 5.0, 2.0),  // one metre beyond the face: arm -2
+                                 Vec3(4.0, 6.0, 3.0)};
+  const MadeUpGrains grains(MPI_COMM_WORLD, 3, [&](GlobalId id) {
+    return MadeUpGrain{.position = places[static_cast<std::size_t>(id)],
+                       .fluid_force = Vec3(static_cast<double>(id), 0.0, 0.0),
+                       .contact_force = Vec3(0.0, 0.0, 2.0),
+                       .contact_torque = Vec3(0.0, 1.0, 0.0)};
+  });
+  const PeriodicBox box = made_up_box().box();
+  const Snapshot snapshot = grains.snapshot(3.0);
 
-  PopulationLoads loads(MPI_COMM_WORLD, decomposition.box(),
+  PopulationLoads loads(MPI_COMM_WORLD, box,
                         {{"wall", 0, 2, [](double time) { return Vec3(1.0, 5.0, time - 1.0); }},
                          {"bed", 2, 3, [](double) { return Vec3(4.0, 4.0, 0.0); }}},
                         true);
@@ -54,19 +39,18 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
   EXPECT_EQ(value_of(diagnostics, "bed_fluid_torque_z"), -4.0);
 
   // A pivot that has gone around the box three times is at x = 1 as well.
-  PopulationLoads travelling(MPI_COMM_WORLD, decomposition.box(),
-                             {{"roller", 0, 2, [](double) { return Vec3(61.0, 5.0, 2.0); }}}, true);
+  PopulationLoads travelling(MPI_COMM_WORLD, box, {{"roller", 0, 2, [](double) { return Vec3(61.0, 5.0, 2.0); }}},
+                             true);
   travelling.observe(snapshot);
   EXPECT_EQ(value_of(travelling.diagnostics(), "roller_contact_torque_y"), 6.0);
 
-  PopulationLoads dry(MPI_COMM_WORLD, decomposition.box(), {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}},
-                      false);
+  PopulationLoads dry(MPI_COMM_WORLD, box, {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}}, false);
   EXPECT_EQ(dry.diagnostics().size(), 6u);
 }
 
 // A model fluid loads grains as water does.
 TEST(PopulationLoads, HasTheLoadOfAModelFluid) {
-  const Decomposition decomposition({40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1});
+  const Decomposition decomposition = made_up_box();
   RunContext run;
   run.box = decomposition.box();
   run.grains.emplace();

@@ -14,9 +14,7 @@ namespace {
 using coupling::FluidInitialState;
 
 double result(const StressBalance& balance, const std::string& name) {
-  for (const Diagnostic& diagnostic : balance.results())
-    if (diagnostic.name == name) return diagnostic.value;
-  throw std::out_of_range("no result " + name);
+  return find_diagnostic(balance.results(), name).value();
 }
 
 // A viscous fluid among spheres of 9 or 6 cells; what the tests below have in common.

@@ -1,8 +1,8 @@
 #include "analysis/observers/tracks.hpp"
 
-#include "core/parallel/decomposition.hpp"
-#include "core/parallel/mpi_session.hpp"
+#include "tests/analysis/made_up_grains.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/named_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,85 +11,55 @@
 namespace thalweg::analysis::tracks_test {
 namespace {
 
-// Three grains in a box of 20 m x 10 m x 5 m, periodic along x and y; each belongs to another rank at every step. Grain
-// 2 goes round: x = 19 + 7 t against 20, y = 1 - 3 t; its spin and forces follow from the time.
-class Carousel {
-public:
-  Vec3 place(GlobalId id, double time) const {
-    return id == 2 ? Vec3(19.0 + 7.0 * time, 1.0 - 3.0 * time, 2.0) : Vec3(5.0, 5.0, 1.0 + static_cast<double>(id));
-  }
-
-  void show(Tracks& tracks, std::int64_t step) const {
-    const double time = 0.5 * static_cast<double>(step);
-    std::vector<GlobalId> id;
-    std::vector<Vec3> position, velocity, spin, force, couple, contact;
-    for (GlobalId grain = 2; grain >= 0; --grain) {
-      if ((grain + step) % size_of(MPI_COMM_WORLD) != rank_of(MPI_COMM_WORLD)) continue;
-      Vec3 x = place(grain, time);
-      for (int axis = 0; axis < 2; ++axis) x[axis] -= size_[axis] * std::floor(x[axis] / size_[axis]);
-      id.push_back(grain);
-      position.push_back(x);
-      velocity.push_back(grain == 2 ? Vec3(7.0, -3.0, 0.0) : Vec3(Vec3::Zero()));
-      spin.push_back(Vec3(time, 0.0, 0.0));
-      force.push_back(Vec3(0.0, time, 0.0));
-      couple.push_back(Vec3(0.0, 0.0, static_cast<double>(grain)));
-      contact.push_back(Vec3(-1.0, 0.0, 0.0));
-    }
-    Snapshot snapshot;
-    snapshot.time = time;
-    snapshot.step = step;
-    snapshot.decomposition = &decomposition_;
-    snapshot.grains.global_count = 3;
-    snapshot.grains.id = id;
-    snapshot.grains.position = position;
-    snapshot.grains.velocity = velocity;
-    snapshot.grains.angular_velocity = spin;
-    snapshot.grains.fluid_force = force;
-    snapshot.grains.fluid_torque = couple;
-    snapshot.grains.contact_force = contact;
-    tracks.observe(snapshot);
-  }
-
-private:
-  Decomposition decomposition_{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
-  Vec3 size_{20.0, 10.0, 5.0};
-};
-
-const Profile& array_of(const Records& records, const std::string& name) {
-  for (const Profile& array : records.rows)
-    if (array.name == name) return array;
-  throw std::out_of_range(name);
+// Where three grains are, beyond periodic faces, too: grain 2 goes round, x = 19 + 7 t against 20, y = 1 - 3 t.
+Vec3 place(GlobalId id, double time) {
+  return id == 2 ? Vec3(19.0 + 7.0 * time, 1.0 - 3.0 * time, 2.0) : Vec3(5.0, 5.0, 1.0 + static_cast<double>(id));
 }
 
+// Each belongs to another rank at every step; their spin and forces follow from the time.
+void show(Tracks& tracks, std::int64_t step) {
+  const double time = 0.5 * static_cast<double>(step);
+  const auto grain = [time](GlobalId id) {
+    return MadeUpGrain{.velocity = id == 2 ? Vec3(7.0, -3.0, 0.0) : Vec3(Vec3::Zero()),
+                       .angular_velocity = Vec3(time, 0.0, 0.0),
+                       .position = place(id, time),
+                       .fluid_force = Vec3(0.0, time, 0.0),
+                       .fluid_torque = Vec3(0.0, 0.0, static_cast<double>(id)),
+                       .contact_force = Vec3(-1.0, 0.0, 0.0)};
+  };
+  tracks.observe(MadeUpGrains(MPI_COMM_WORLD, 3, grain, step).snapshot(time, 0.5));
+}
+
+using test::named;
+
 TEST(Tracks, GoOnWhereAGrainLeavesTheBox) {
-  const Carousel carousel;
   Tracks tracks(MPI_COMM_WORLD, {0, 2}, 0.5);
-  for (std::int64_t step = 0; step < 30; ++step) carousel.show(tracks, step);
-  carousel.show(tracks, 29);  // seen before
+  for (std::int64_t step = 0; step < 30; ++step) show(tracks, step);
+  show(tracks, 29);  // seen before
   const Records records = tracks.take_records();
   if (rank_of(MPI_COMM_WORLD) != 0) {
     EXPECT_TRUE(records.rows.empty() && records.fixed.empty());
     return;
   }
   EXPECT_EQ(records.fixed.at(0).values, (std::vector<std::int64_t>{0, 2}));
-  EXPECT_EQ(array_of(records, "time").values.size(), 30u);
-  const Profile& position = array_of(records, "position");
+  EXPECT_EQ(named(records.rows, "time").values.size(), 30u);
+  const Profile& position = named(records.rows, "position");
   ASSERT_EQ(position.shape, (std::vector<std::uint64_t>{30, 2, 3}));
   for (std::size_t row = 0; row < 30; ++row) {
     const double time = 0.5 * static_cast<double>(row);
-    const Vec3 expected = carousel.place(2, time);
+    const Vec3 expected = place(2, time);
     for (std::size_t axis = 0; axis < 3; ++axis)  // exact but for the rounding of places in the box
       EXPECT_NEAR(position.values[6 * row + 3 + axis], expected[static_cast<Eigen::Index>(axis)], 1e-12);
-    EXPECT_EQ(array_of(records, "angular_velocity").values[6 * row], time);
-    EXPECT_EQ(array_of(records, "fluid_force").values[6 * row + 1], time);
-    EXPECT_EQ(array_of(records, "fluid_couple").values[6 * row + 5], 2.0);
-    EXPECT_EQ(array_of(records, "contact_force").values[6 * row + 3], -1.0);
+    EXPECT_EQ(named(records.rows, "angular_velocity").values[6 * row], time);
+    EXPECT_EQ(named(records.rows, "fluid_force").values[6 * row + 1], time);
+    EXPECT_EQ(named(records.rows, "fluid_couple").values[6 * row + 5], 2.0);
+    EXPECT_EQ(named(records.rows, "contact_force").values[6 * row + 3], -1.0);
   }
 }
 
 // Grains 1 and 2 are members of a clump, which the last rank owns; a sphere has no orientation but 1, 0, 0, 0.
 TEST(Tracks, OfMembersHaveTheOrientationOfTheirClump) {
-  const Decomposition decomposition{{40, 20, 10}, 0.5, {true, true, false}, {1, 1, 1}};
+  const Decomposition decomposition = made_up_box();
   const bool here = rank_of(MPI_COMM_WORLD) == size_of(MPI_COMM_WORLD) - 1, first = rank_of(MPI_COMM_WORLD) == 0;
   std::vector<GlobalId> id, clump;
   if (here) id = {2, 1}, clump = {1, 1};
@@ -112,27 +82,26 @@ TEST(Tracks, OfMembersHaveTheOrientationOfTheirClump) {
   tracks.observe(snapshot);
   const Records records = tracks.take_records();
   if (!first) return;
-  const Profile& orientation = array_of(records, "orientation");
+  const Profile& orientation = named(records.rows, "orientation");
   EXPECT_EQ(orientation.shape, (std::vector<std::uint64_t>{1, 2, 4}));
   EXPECT_EQ(orientation.values, (std::vector<double>{1.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.8, 0.0}));
 }
 
 TEST(Tracks, GoOnAfterARestartOnAnyRanks) {
-  const Carousel carousel;
   Tracks straight(MPI_COMM_WORLD, {0, 2}, 0.5), before(MPI_COMM_WORLD, {0, 2}, 0.5), after(MPI_COMM_WORLD, {0, 2}, 0.5);
-  for (std::int64_t step = 0; step < 30; ++step) carousel.show(straight, step);
-  for (std::int64_t step = 0; step < 13; ++step) carousel.show(before, step);
+  for (std::int64_t step = 0; step < 30; ++step) show(straight, step);
+  for (std::int64_t step = 0; step < 13; ++step) show(before, step);
   before.take_records();
   test::MemoryArchive archive;
   test::MemoryWriter writer(archive, MPI_COMM_WORLD);
   before.save(writer);
   test::MemoryReader reader(archive);
   after.load(reader);
-  for (std::int64_t step = 12; step < 30; ++step) carousel.show(after, step);
+  for (std::int64_t step = 12; step < 30; ++step) show(after, step);
   EXPECT_EQ(after.results().at(1).value, 30.0);
   if (rank_of(MPI_COMM_WORLD) != 0) return;
   const Records whole = straight.take_records(), rest = after.take_records();
-  ASSERT_EQ(array_of(rest, "time").values.size(), 17u);
+  ASSERT_EQ(named(rest.rows, "time").values.size(), 17u);
   for (std::size_t a = 0; a < rest.rows.size(); ++a) {
     const std::vector<double>&part = rest.rows[a].values, &all = whole.rows[a].values;
     EXPECT_TRUE(std::equal(part.rbegin(), part.rend(), all.rbegin())) << rest.rows[a].name;

@@ -2,6 +2,7 @@
 
 #include "tests/analysis/made_up_grains.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/named_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,8 @@ namespace thalweg::analysis::reach_test {
 namespace {
 
 const MPI_Comm world = MPI_COMM_WORLD;
-constexpr double interval = 0.25;                             // s, between looks
-constexpr double length = 20.0, width = 10.0, spacing = 2.0;  // m; ten sections
+constexpr double interval = 0.25;              // s, between looks
+constexpr double width = 10.0, spacing = 2.0;  // m; ten sections
 const TransportScales scales{1.0, 2650.0, 1000.0, 9.81};
 const ReachKeys keys{
     .every = interval, .record_every = 4 * interval, .sections = 10, .pixel = 0.05, .moving_speed = 0.5};
@@ -35,41 +36,22 @@ using Script = std::function<std::optional<Place>(GlobalId id, int look)>;
 class Play {
 public:
   Play(bool periodic, GlobalId ids, Script script)
-      : decomposition_({40, 20, 10}, 0.5, {periodic, true, false}, {1, 1, 1}), ids_(ids), script_(std::move(script)) {}
+      : box_(made_up_box(periodic)), ids_(ids), script_(std::move(script)) {}
 
-  PeriodicBox box() const { return decomposition_.box(); }
+  PeriodicBox box() const { return box_.box(); }
 
   void show(Reach& reach, MPI_Comm communicator, int look) const {
-    std::vector<GlobalId> id;
-    std::vector<double> radius;
-    std::vector<Vec3> position, velocity;
-    GlobalId count = 0, end = 0;
-    for (GlobalId n = ids_ - 1; n >= 0; --n) {
-      const std::optional<Place> place = script_(n, look);
-      if (!place) continue;
-      ++count;
-      end = std::max(end, n + 1);
-      if ((n * 5 + look) % size_of(communicator) != rank_of(communicator)) continue;
-      id.push_back(n);
-      radius.push_back(radius_of(n));
-      position.push_back(Vec3(place->x - length * std::floor(place->x / length), 5.0, place->z));
-      velocity.push_back(Vec3(place->v_x, 0.0, 0.0));
-    }
-    Snapshot snapshot;
-    snapshot.time = interval * look;
-    snapshot.step = 100 * look;
-    snapshot.decomposition = &decomposition_;
-    snapshot.grains.global_count = count;
-    snapshot.grains.id_limit = end;
-    snapshot.grains.id = id;
-    snapshot.grains.radius = radius;
-    snapshot.grains.position = position;
-    snapshot.grains.velocity = velocity;
-    reach.observe(snapshot);
+    const auto grain = [&](GlobalId id) -> std::optional<MadeUpGrain> {
+      const std::optional<Place> place = script_(id, look);
+      if (!place) return std::nullopt;
+      return MadeUpGrain{
+          .radius = radius_of(id), .velocity = Vec3(place->v_x, 0.0, 0.0), .position = Vec3(place->x, 5.0, place->z)};
+    };
+    reach.observe(MadeUpGrains(communicator, ids_, grain, look, box_).snapshot(interval * look));
   }
 
 private:
-  Decomposition decomposition_;
+  Decomposition box_;
   GlobalId ids_;
   Script script_;
 };
@@ -96,11 +78,7 @@ const Play open_reach(false, 5, [](GlobalId id, int look) -> std::optional<Place
   return Place{13.0, 0.0, look < 12 ? 0.6 : 4.4};
 });
 
-const Profile& array_of(const std::vector<Profile>& arrays, const std::string& name) {
-  for (const Profile& array : arrays)
-    if (array.name == name) return array;
-  throw std::out_of_range(name);
-}
+using test::named;
 
 Reach observer_of(const Play& play, MPI_Comm communicator, bool recirculation, const ReachKeys& with = keys) {
   return {communicator, play.box(), scales, with, 0.0, recirculation};
@@ -120,11 +98,11 @@ TEST(Reach, CountsEveryGrainThatCrossesASectionOfAPeriodicReach) {
                               (k == 2 ? volume_of(4) : 0.0) - volume_of(2) * up[k];
     volume += of_section;
     const std::vector<Profile> profiles = reach.profiles();
-    EXPECT_EQ(array_of(profiles, "downstream_grains").values.at(k), down[k]) << k;
-    EXPECT_EQ(array_of(profiles, "upstream_grains").values.at(k), up[k]) << k;
-    EXPECT_NEAR(array_of(profiles, "q_s").values.at(k), of_section / (width * 4.0), 1e-12) << k;
-    EXPECT_NEAR(array_of(profiles, "upstream_q_s").values.at(k), up[k] * volume_of(2) / (width * 4.0), 1e-12) << k;
-    EXPECT_EQ(array_of(profiles, "section").values.at(k), 2.0 * static_cast<double>(k));
+    EXPECT_EQ(named(profiles, "downstream_grains").values.at(k), down[k]) << k;
+    EXPECT_EQ(named(profiles, "upstream_grains").values.at(k), up[k]) << k;
+    EXPECT_NEAR(named(profiles, "q_s").values.at(k), of_section / (width * 4.0), 1e-12) << k;
+    EXPECT_NEAR(named(profiles, "upstream_q_s").values.at(k), up[k] * volume_of(2) / (width * 4.0), 1e-12) << k;
+    EXPECT_EQ(named(profiles, "section").values.at(k), 2.0 * static_cast<double>(k));
   }
   const std::vector<Diagnostic> results = reach.results();
   EXPECT_NEAR(value_of(results, "q_s_mean"), volume / (10.0 * width * 4.0), 1e-12);
@@ -141,17 +119,17 @@ TEST(Reach, CountsWhatIsEntrainedAndDepositedWhereItLay) {
   const std::vector<Profile> profiles = reach.profiles();
   const double rate = volume_of(4) / (width * spacing * 4.0);  // m/s
   for (std::size_t bin = 0; bin < 10; ++bin) {
-    EXPECT_NEAR(array_of(profiles, "entrainment_rate").values.at(bin), bin == 1 ? rate : 0.0, 1e-14) << bin;
-    EXPECT_NEAR(array_of(profiles, "deposition_rate").values.at(bin), bin == 2 ? rate : 0.0, 1e-14) << bin;
+    EXPECT_NEAR(named(profiles, "entrainment_rate").values.at(bin), bin == 1 ? rate : 0.0, 1e-14) << bin;
+    EXPECT_NEAR(named(profiles, "deposition_rate").values.at(bin), bin == 2 ? rate : 0.0, 1e-14) << bin;
   }
   EXPECT_NEAR(value_of(reach.results(), "entrainment_rate"), 0.1 * rate, 1e-14);
   EXPECT_NEAR(value_of(reach.results(), "deposition_rate"), 0.1 * rate, 1e-14);
   const Records records = reach.take_records();
   if (rank_of(world) != 0) return;
   // It began to move in the second second, and came to rest in the third.
-  EXPECT_NEAR(array_of(records.rows, "entrained").values.at(10 + 1), 4.0 * rate, 1e-14);
-  EXPECT_NEAR(array_of(records.rows, "deposited").values.at(20 + 2), 4.0 * rate, 1e-14);
-  EXPECT_EQ(array_of(records.places, "x").values.at(2), 5.0);
+  EXPECT_NEAR(named(records.rows, "entrained").values.at(10 + 1), 4.0 * rate, 1e-14);
+  EXPECT_NEAR(named(records.rows, "deposited").values.at(20 + 2), 4.0 * rate, 1e-14);
+  EXPECT_EQ(named(records.places, "x").values.at(2), 5.0);
 }
 
 TEST(Reach, BalancesWhatComesInAndLeavesToTheGrain) {
@@ -174,9 +152,9 @@ TEST(Reach, BalancesWhatComesInAndLeavesToTheGrain) {
   // to 16.5 m and from 2.5 m to 4.5 m, 2 from 2.5 m to 16.5 m. The ends are no sections.
   const std::vector<Profile> profiles = reach.profiles();
   const std::vector<double> down{0, 3, 2, 2, 2, 4, 4, 4, 0};  // at 2, 4, ... 18 m
-  EXPECT_EQ(array_of(profiles, "downstream_grains").values, down);
-  EXPECT_EQ(array_of(profiles, "upstream_grains").values, std::vector<double>(9, 0.0));
-  EXPECT_EQ(array_of(profiles, "section").values.front(), 2.0);
+  EXPECT_EQ(named(profiles, "downstream_grains").values, down);
+  EXPECT_EQ(named(profiles, "upstream_grains").values, std::vector<double>(9, 0.0));
+  EXPECT_EQ(named(profiles, "section").values.front(), 2.0);
 }
 
 TEST(Reach, BalancesEveryRecordOfEveryBin) {
@@ -185,11 +163,11 @@ TEST(Reach, BalancesEveryRecordOfEveryBin) {
   const Records records = reach.take_records();
   if (rank_of(world) != 0) return;
   const auto at = [&](const char* name, std::size_t row, std::size_t place) {
-    const Profile& array = array_of(records.rows, name);
+    const Profile& array = named(records.rows, name);
     return array.values.at(row * array.shape.at(1) + place);
   };
-  ASSERT_EQ(array_of(records.rows, "time").values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
-  ASSERT_EQ(array_of(records.rows, "q_s").shape, (std::vector<std::uint64_t>{6, 9}));
+  ASSERT_EQ(named(records.rows, "time").values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  ASSERT_EQ(named(records.rows, "q_s").shape, (std::vector<std::uint64_t>{6, 9}));
   for (std::size_t row = 1; row < 6; ++row)
     for (std::size_t bin = 0; bin < 10; ++bin) {
       const double in = bin == 0 ? 0.0 : at("q_s", row, bin - 1), out = bin == 9 ? 0.0 : at("q_s", row, bin);
@@ -227,7 +205,7 @@ TEST(Reach, HasTheLevelOfWhatStandsStillAndItsTrend) {
   const double level_at_first = 1.0 + 0.25 * std::numbers::pi * radius_of(0);
   const Records records = reach.take_records();
   if (rank_of(world) == 0) {
-    const Profile& level = array_of(records.rows, "bed_level");
+    const Profile& level = named(records.rows, "bed_level");
     ASSERT_EQ(level.shape, (std::vector<std::uint64_t>{4, 10}));
     EXPECT_NEAR(level.values.at(2), level_at_first, 0.5 * *fine.pixel);
     EXPECT_NEAR(level.values.at(32), level.values.at(2) + 3.0 * 0.125, 1e-12);
@@ -235,7 +213,7 @@ TEST(Reach, HasTheLevelOfWhatStandsStillAndItsTrend) {
   }
   EXPECT_NEAR(value_of(reach.results(), "bed_level_mean"), level_at_first + 1.5 * 0.125, 0.5 * *fine.pixel);
   EXPECT_NEAR(value_of(reach.results(), "bed_level_trend"), 0.125, 1e-12);
-  EXPECT_NEAR(array_of(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
+  EXPECT_NEAR(named(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
 }
 
 test::MemoryArchive saved(const Reach& reach, MPI_Comm communicator) {

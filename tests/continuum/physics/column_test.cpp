@@ -3,6 +3,7 @@
 #include "core/base/error.hpp"
 #include "core/keys/key_error.hpp"
 #include "tests/support/memory_archive.hpp"
+#include "tests/support/named_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,10 +37,7 @@ double diagnostic(const System& system, const std::string& name) {
 }
 
 std::vector<double> profile(const ContinuumSystem& column, const std::string& name) {
-  for (const Profile& found : column.profiles())
-    if (found.name == name) return found.values;
-  ADD_FAILURE() << name;
-  return {};
+  return test::named(column.profiles(), name).values;
 }
 
 TEST(Column, DepthFollowsFromTheShieldsNumber) {

@@ -103,9 +103,7 @@ TEST(WaterMass, IsRecordedForTheOtherLinkRule) {
 }
 
 double diagnostic(const System& system, const std::string& name) {
-  for (const Diagnostic& diagnostic : system.diagnostics())
-    if (diagnostic.name == name) return diagnostic.value;
-  return HUGE_VAL;
+  return find_diagnostic(system.diagnostics(), name).value();
 }
 
 // At any time what single cells took that changed hands in the last step is still owed: here up to a hundred, with

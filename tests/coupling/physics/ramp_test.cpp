@@ -31,10 +31,7 @@ std::unique_ptr<LatticeSystem<double>> fluid_in(const LatticeParameters& paramet
 }
 
 double diagnostic(const System& system, const std::string& name) {
-  for (const Diagnostic& f : system.diagnostics())
-    if (f.name == name) return f.value;
-  ADD_FAILURE() << "no diagnostic " << name;
-  return 0.0;
+  return find_diagnostic(system.diagnostics(), name).value();
 }
 
 // 80 steps of the ramp of 80.5 steps give F times its integral; 200 steps F (200 - 80.5/2), since the integral of the

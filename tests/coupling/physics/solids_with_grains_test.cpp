@@ -29,10 +29,7 @@ WaterBox basin() {
 }
 
 double diagnostic_of(const LatticeSystem<double>& system, const std::string& name) {
-  for (const Diagnostic& diagnostic : system.diagnostics())
-    if (diagnostic.name == name) return diagnostic.value;
-  ADD_FAILURE() << name;
-  return 0.0;
+  return find_diagnostic(system.diagnostics(), name).value();
 }
 
 // A grain that lies on a block presses it down by its weight less its buoyancy, as it would the floor.

@@ -95,10 +95,7 @@ void run(GrainDynamics& grains, int steps) {
 }
 
 double diagnostic(const GrainDynamics& grains, const std::string& name) {
-  for (const Diagnostic& one : grains.turnover_diagnostics())
-    if (one.name == name) return one.value;
-  ADD_FAILURE() << "no diagnostic " << name;
-  return 0.0;
+  return find_diagnostic(grains.turnover_diagnostics(), name).value();
 }
 
 thalweg::test::MemoryArchive saved(const GrainDynamics& grains, MPI_Comm communicator) {
