@@ -15,7 +15,8 @@ def additions(path):
     found = {name: {edit[0] for edit in edits} for name, edits in vars(module).items()
              if name.isupper() and isinstance(edits, list)}
     if header := getattr(module, "HEADER", None):
-        found["CONTACT_LAW"].add(header)
+        (only,) = found.values()
+        only.add(header)
     return {(name, path): files for name, files in found.items()}
 
 

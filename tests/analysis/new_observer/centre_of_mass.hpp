@@ -2,8 +2,7 @@
 //
 //   z_c = sum of m z / sum of m,
 //
-// in every row of the series, and its mean over time in the summary. In the program it would stand in two files of
-// analysis/observers/, and its keys in observer_list.hpp.
+// in every row of the series, and its mean over time in the summary. extend.py puts it where it belongs.
 #pragma once
 
 #include "analysis/observer/mean_observer.hpp"
