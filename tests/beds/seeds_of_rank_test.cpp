@@ -162,12 +162,8 @@ TEST(SeedsOfRank, ThatDoNotFitAreRefusedOnAllRanks) {
 }
 
 GrainParameters usual() {
-  GrainParameters p;
-  p.contact = test::glass(0.9);
+  GrainParameters p = test::parameters(test::glass(0.9), 5e-6, 20);
   p.assemblies = assemblies_of(four_kinds());
-  p.time_step = 5e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   return p;
 }
 

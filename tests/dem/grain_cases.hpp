@@ -31,6 +31,17 @@ inline GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& vel
   return seed;
 }
 
+// time_step: s; skin: m.
+inline GrainParameters parameters(const ContactParameters& contact, double time_step, int sub_steps,
+                                  double skin = 1e-3) {
+  GrainParameters p;
+  p.contact = contact;
+  p.time_step = time_step;
+  p.sub_steps = sub_steps;
+  p.skin = skin;
+  return p;
+}
+
 // A cube of 20 x 20 x 20 cells, 50 mm wide, periodic along x and y, on one rank.
 inline Decomposition cube(bool periodic_z = false) {
   return Decomposition({20, 20, 20}, 2.5e-3, {true, true, periodic_z}, {1, 1, 1});

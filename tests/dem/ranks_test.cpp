@@ -166,12 +166,7 @@ void run(GrainDynamics& grains, int steps) {
   }
 }
 
-thalweg::test::MemoryArchive saved(const GrainDynamics& grains, MPI_Comm communicator) {
-  thalweg::test::MemoryArchive archive;
-  thalweg::test::MemoryWriter writer(archive, communicator);
-  grains.save(writer);
-  return archive;
-}
+using thalweg::test::saved;
 
 std::vector<Index3> layouts(const Index3& cells, int ranks) {
   std::vector<Index3> all;
@@ -300,8 +295,7 @@ void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {
 
     // The state that one rank saved half way, loaded on all of them, ends alike.
     GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, GrainSeeds{});
-    thalweg::test::MemoryReader reader(half);
-    restarted.load(reader);
+    thalweg::test::load(restarted, half);
     EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "") << name;
     run(restarted, steps - steps / 2);
     EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), reference), "") << name;
@@ -437,8 +431,7 @@ TEST(Ranks, StateSavedByAllIsLoadedByOne) {
   const thalweg::test::MemoryArchive half = saved(together, MPI_COMM_WORLD);
   run(together, 120);
   GrainDynamics alone(one, MPI_COMM_SELF, p, GrainSeeds{});
-  thalweg::test::MemoryReader reader(half);
-  alone.load(reader);
+  thalweg::test::load(alone, half);
   run(alone, 120);
   EXPECT_EQ(thalweg::test::first_difference(saved(together, MPI_COMM_WORLD), saved(alone, MPI_COMM_SELF)), "");
 }

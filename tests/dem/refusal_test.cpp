@@ -16,12 +16,8 @@ Decomposition shared_box() {
 }
 
 GrainParameters usual() {
-  GrainParameters p;
-  p.contact = test::glass(0.9);
+  GrainParameters p = test::parameters(test::glass(0.9), 5e-6, 20);
   p.walls = {face_plane(shared_box().box(), 2, false, 0.5)};
-  p.time_step = 5e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   return p;
 }
 

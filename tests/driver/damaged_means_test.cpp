@@ -54,10 +54,7 @@ struct Watched {
     }
   }
   test::MemoryArchive saved(const RunHistory& history) const {
-    test::MemoryArchive archive;
-    test::MemoryWriter writer(archive, world);
-    history.save(writer, observers, c.output.series.every);
-    return archive;
+    return test::saved(history, world, observers, c.output.series.every);
   }
 };
 

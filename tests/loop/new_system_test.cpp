@@ -80,15 +80,9 @@ TEST(NewSystem, ContinuesFromACheckpointWithTheSameBits) {
   FallingSphere whole, first, second;
   run(whole, 0.05);
   run(first, 0.02);
-  const auto saved = [](const FallingSphere& system) {
-    thalweg::test::MemoryArchive archive;
-    thalweg::test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-    system.save(writer);
-    return archive;
-  };
+  const auto saved = [](const FallingSphere& system) { return thalweg::test::saved(system, MPI_COMM_WORLD); };
   const thalweg::test::MemoryArchive checkpoint = saved(first);
-  thalweg::test::MemoryReader reader(checkpoint);
-  second.load(reader);
+  thalweg::test::load(second, checkpoint);
   run(second, 0.05);
   EXPECT_EQ(thalweg::test::first_difference(saved(second), saved(whole)), "");
   EXPECT_NE(thalweg::test::first_difference(saved(second), checkpoint), "");

@@ -105,6 +105,15 @@ private:
   MPI_Comm communicator_;
 };
 
+// What save(ArchiveWriter&, how ...) of a state saves. Collective.
+template <typename State, typename... How>
+MemoryArchive saved(const State& state, MPI_Comm communicator, const How&... how) {
+  MemoryArchive archive;
+  MemoryWriter writer(archive, communicator);
+  state.save(writer, how...);
+  return archive;
+}
+
 class MemoryReader : public ArchiveReader {
 public:
   explicit MemoryReader(const MemoryArchive& archive) : archive_(archive) {}
@@ -145,5 +154,12 @@ private:
 
   const MemoryArchive& archive_;
 };
+
+// Gives a state the archive by its load(ArchiveReader&, how ...), and returns what that returns. Collective.
+template <typename State, typename... How>
+auto load(State& state, const MemoryArchive& archive, const How&... how) {
+  MemoryReader reader(archive);
+  return state.load(reader, how...);
+}
 
 }  // namespace thalweg::test

@@ -73,13 +73,10 @@ TEST(CentreOfMass, IsInEveryRowAndItsMeanFromATimeOn) {
 TEST(CentreOfMass, ContinuesAfterARestartIfTheMeanBeginsAtTheSameTime) {
   const auto first = observer(1.0);
   first->observe(column(0.0).snapshot(1.0));
-  test::MemoryArchive checkpoint;
-  test::MemoryWriter writer(checkpoint, world);
-  first->save(writer);
+  const test::MemoryArchive checkpoint = test::saved(*first, world);
   for (const double from : {1.0, 1.2}) {
     const auto second = observer(from);
-    test::MemoryReader reader(checkpoint);
-    EXPECT_EQ(second->load(reader), from == 1.0);
+    EXPECT_EQ(test::load(*second, checkpoint), from == 1.0);
     second->observe(column(0.0).snapshot(1.0));  // the state of the checkpoint once more
     second->observe(column(1.0).snapshot(1.5));
     EXPECT_EQ(value_of(second->results(), "centre_of_mass_mean"), from == 1.0 ? 2.5 : 3.0);

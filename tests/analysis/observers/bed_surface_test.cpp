@@ -56,12 +56,7 @@ BedSurfaceKeys keys() { return {0.0, 0.125, d, d / 25.0, 0.5}; }
 // Slope and walls of a flume: rho_f g S = 500 Pa/m, (rho_s - rho_f) g d = 80 Pa.
 const BedFlow flume{2, 500.0, 80.0};
 
-test::MemoryArchive saved(const BedSurface& surface, MPI_Comm communicator) {
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  surface.save(writer);
-  return archive;
-}
+using thalweg::test::saved;
 
 TEST(BedHeight, OfAUniformBlockIsItsTop) {
   std::vector<double> below;
@@ -315,8 +310,7 @@ TEST(BedSurface, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
     shared.observe(dealt.at(step, jiggling(step)));
     if (step == 6) half_way = saved(alone, MPI_COMM_SELF);
   }
-  test::MemoryReader reader(half_way);
-  restarted.load(reader);
+  test::load(restarted, half_way);
   for (std::int64_t step = 6; step <= 11; ++step) restarted.observe(dealt.at(step, jiggling(step)));  // 6 is seen again
   const test::MemoryArchive end = saved(alone, MPI_COMM_SELF);
   EXPECT_EQ(test::first_difference(end, saved(shared, world)), "");

@@ -227,15 +227,9 @@ void restart(Bed bed, const EntrainmentSettings& given) {
       after(MPI_COMM_WORLD, box, given);
   for (std::int64_t step = 0; step <= 150; ++step) bed.show(straight, step);
   for (std::int64_t step = 0; step <= 73; ++step) bed.show(before, step);
-  test::MemoryArchive archive, of_after, of_straight;
-  test::MemoryWriter writer(archive, MPI_COMM_WORLD), a(of_after, MPI_COMM_WORLD), b(of_straight, MPI_COMM_WORLD);
-  before.save(writer);
-  test::MemoryReader reader(archive);
-  after.load(reader);
+  test::load(after, test::saved(before, MPI_COMM_WORLD));
   for (std::int64_t step = 73; step <= 150; ++step) bed.show(after, step);
-  after.save(a);
-  straight.save(b);
-  EXPECT_EQ(test::first_difference(of_after, of_straight), "");
+  EXPECT_EQ(test::first_difference(test::saved(after, MPI_COMM_WORLD), test::saved(straight, MPI_COMM_WORLD)), "");
   const Records rest = after.take_records(), whole = straight.take_records(), first = before.take_records();
   if (rank_of(MPI_COMM_WORLD) != 0) return;
   EXPECT_EQ(first.events.size(), 1u);

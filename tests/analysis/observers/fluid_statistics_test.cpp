@@ -168,11 +168,7 @@ TEST(FluidStatistics, HaveTheSameBitsOnAnyRanksAndAfterARestart) {
     alone.watch(0, 30);
     shared.watch(0, 30);
     before.watch(0, 17);
-    test::MemoryArchive archive;
-    test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-    before.statistics.save(writer);
-    test::MemoryReader reader(archive);
-    after.statistics.load(reader);
+    test::load(after.statistics, test::saved(before.statistics, MPI_COMM_WORLD));
     after.watch(17, 30);  // the step of the checkpoint is seen again
     const auto a = alone.statistics.profiles(), b = shared.statistics.profiles(), c = after.statistics.profiles();
     ASSERT_EQ(a.size(), sections ? 8u : 4u);

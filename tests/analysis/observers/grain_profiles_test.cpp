@@ -63,12 +63,8 @@ std::map<std::string, std::vector<double>> by_name(const GrainProfiles& profiles
 }
 
 GrainParameters plain() {
-  GrainParameters p;
-  p.contact = dem::test::glass(0.3);
+  GrainParameters p = dem::test::parameters(dem::test::glass(0.3), 8e-6, 20);
   p.contact.normal_stiffness = 20000.0;
-  p.time_step = 8e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   return p;
 }
 
@@ -154,12 +150,9 @@ TEST(GrainProfiles, OfClumpsHaveTheMeanOrientationOfTheirAxes) {
   EXPECT_NEAR(clumps / (2.0 * volume), 1.0, 1e-9);
   EXPECT_NEAR(all / (3.0 * volume), 1.0, 1e-9);
 
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-  profiles.save(writer);
+  const test::MemoryArchive archive = test::saved(profiles, MPI_COMM_WORLD);
   GrainProfiles after(MPI_COMM_WORLD, decomposition, 1e-3, {}, 0.0, true);
-  test::MemoryReader reader(archive);
-  EXPECT_TRUE(after.load(reader));
+  EXPECT_TRUE(test::load(after, archive));
   EXPECT_EQ(by_name(after), values);
 }
 
@@ -328,16 +321,13 @@ TEST(GrainProfiles, GoOnAfterARestartWithTheSameBits) {
   for (int n = 0; n < 40; ++n) {
     dem::test::step(grains);
     whole.observe(Shown(grains).snapshot(n));
-    if (n != 19) continue;
-    thalweg::test::MemoryWriter writer(half, MPI_COMM_WORLD);
-    whole.save(writer);
+    if (n == 19) half = thalweg::test::saved(whole, MPI_COMM_WORLD);
   }
   // The same on one rank, and from the half way on.
   GrainDynamics alone(Decomposition({16, 16, 16}, 2.5e-3, {true, true, true}, {1, 1, 1}), MPI_COMM_SELF, plain(),
                       seeds);
   GrainProfiles rest(MPI_COMM_SELF, decomposition, 2.5e-3, {0.0, 0.01});
-  thalweg::test::MemoryReader reader(half);
-  rest.load(reader);
+  thalweg::test::load(rest, half);
   for (int n = 0; n < 40; ++n) {
     dem::test::step(alone);
     rest.observe(Shown(alone).snapshot(n));

@@ -32,11 +32,7 @@ void looks_without_touching(bool side_walls) {
     balance.observe(watched->snapshot());
     of_one.observe(serial->snapshot());
     if (step == 9) {
-      thalweg::test::MemoryArchive archive;
-      thalweg::test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-      balance.save(writer);
-      thalweg::test::MemoryReader reader(archive);
-      again.load(reader);
+      thalweg::test::load(again, thalweg::test::saved(balance, MPI_COMM_WORLD));
     }
     if (step > 9) again.observe(watched->snapshot());
   }

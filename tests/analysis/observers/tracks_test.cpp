@@ -92,11 +92,7 @@ TEST(Tracks, GoOnAfterARestartOnAnyRanks) {
   for (std::int64_t step = 0; step < 30; ++step) show(straight, step);
   for (std::int64_t step = 0; step < 13; ++step) show(before, step);
   before.take_records();
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-  before.save(writer);
-  test::MemoryReader reader(archive);
-  after.load(reader);
+  test::load(after, test::saved(before, MPI_COMM_WORLD));
   for (std::int64_t step = 12; step < 30; ++step) show(after, step);
   EXPECT_EQ(after.results().at(1).value, 30.0);
   if (rank_of(MPI_COMM_WORLD) != 0) return;

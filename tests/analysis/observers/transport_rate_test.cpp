@@ -110,14 +110,11 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   rate.observe(grains(100.0).snapshot(1.9));
   EXPECT_TRUE(std::isnan(value_of(rate.results(), "q_star_mean"))) << "a mean of nothing";
   rate.observe(grains(1.0).snapshot(2.0));
-  test::MemoryArchive checkpoint;
-  test::MemoryWriter writer(checkpoint, world);
-  rate.save(writer);
+  const test::MemoryArchive checkpoint = test::saved(rate, world);
 
   TransportRate restarted(world, scales, {2.0}), other_window(world, scales, {2.5});
   for (TransportRate* next : {&restarted, &other_window}) {
-    test::MemoryReader reader(checkpoint);
-    next->load(reader);
+    test::load(*next, checkpoint);
     next->observe(grains(1.0).snapshot(2.0));  // what the checkpoint holds, seen again: it counts once
     next->observe(grains(3.0).snapshot(3.0));
   }
@@ -132,8 +129,7 @@ TEST(TransportRate, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   TransportScales larger = scales;
   larger.grain_diameter *= 2.0;
   TransportRate of_larger(world, larger, {2.0});
-  test::MemoryReader reader(checkpoint);
-  EXPECT_FALSE(of_larger.load(reader));
+  EXPECT_FALSE(test::load(of_larger, checkpoint));
 }
 
 TEST(TransportRate, OfDryGrainsHasNoQStar) {
@@ -192,18 +188,12 @@ TEST(TransportRate, SaysWhetherTheMeanIsSteady) {
     TransportRate whole(world, scales, {}), first_half(world, scales, {}), second_half(world, scales, {});
     run(whole, 0, 101, rise);
     run(first_half, 0, 41, rise);
-    test::MemoryArchive half_way, end, other_end;
-    test::MemoryWriter writer(half_way, world), end_writer(end, world), other_writer(other_end, world);
-    first_half.save(writer);
-    test::MemoryReader reader(half_way);
-    second_half.load(reader);
+    test::load(second_half, test::saved(first_half, world));
     run(second_half, 40, 101, rise);  // seen again at 40
     EXPECT_EQ(value_of(whole.results(), "steady"), rise == 0.0 ? 1.0 : 0.0);
     EXPECT_EQ(whole.remarks().size(), 2u);
     EXPECT_NE(whole.remarks().at(1).find(rise == 0.0 ? "transport: steady" : "not steady"), std::string::npos);
-    whole.save(end_writer);
-    second_half.save(other_writer);
-    EXPECT_EQ(test::first_difference(end, other_end), "");
+    EXPECT_EQ(test::first_difference(test::saved(whole, world), test::saved(second_half, world)), "");
     EXPECT_EQ(whole.remarks(), second_half.remarks());
   }
 }

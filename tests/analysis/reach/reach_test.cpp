@@ -216,17 +216,9 @@ TEST(Reach, HasTheLevelOfWhatStandsStillAndItsTrend) {
   EXPECT_NEAR(named(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
 }
 
-test::MemoryArchive saved(const Reach& reach, MPI_Comm communicator) {
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  reach.save(writer);
-  return archive;
-}
+using thalweg::test::saved;
 
-bool load(Reach& reach, const test::MemoryArchive& archive) {
-  test::MemoryReader reader(archive);
-  return reach.load(reader);
-}
+using thalweg::test::load;
 
 TEST(Reach, HasTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
   for (const auto& [play, recirculation] : {std::pair{&carousel, false}, std::pair{&open_reach, true}}) {

@@ -163,9 +163,7 @@ TEST(FractionalTransport, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   whole.observe(armoured_bed(world, 0.1, 0.2).snapshot(2.0));
   ASSERT_EQ(whole.remarks().size(), 1U);
   EXPECT_EQ(whole.remarks().front().find("+-"), std::string::npos) << "no error of a single measurement";
-  test::MemoryArchive checkpoint;
-  test::MemoryWriter writer(checkpoint, world);
-  whole.save(writer);
+  const test::MemoryArchive checkpoint = test::saved(whole, world);
 
   FractionalTransport restarted = of_two_classes({.from = 2.0}), other_window = of_two_classes({.from = 2.5});
   FractionalTransport other_classes(world, box, scales, SizeClasses({0.25, 0.6, 1.6}), {.from = 2.0}, 0.0173);

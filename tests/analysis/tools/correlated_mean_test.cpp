@@ -77,16 +77,12 @@ TEST(CorrelatedMean, CountsABurstAtTheEnd) {
 }
 
 test::MemoryArchive saved(const CorrelatedMean& mean) {
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-  mean.save(writer, MPI_COMM_WORLD, "mean");
-  return archive;
+  return test::saved(mean, MPI_COMM_WORLD, MPI_COMM_WORLD, "mean");
 }
 
 CorrelatedMean restored(const test::MemoryArchive& archive) {
   CorrelatedMean mean;
-  test::MemoryReader reader(archive);
-  mean.load(reader, "mean");
+  test::load(mean, archive, "mean");
   return mean;
 }
 

@@ -43,10 +43,7 @@ void observe(Hops& hops, MPI_Comm communicator, int n, int counts_from) {
 }
 
 test::MemoryArchive saved(const Hops& hops, MPI_Comm communicator) {
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  hops.save(writer, "transport_rate");
-  return archive;
+  return test::saved(hops, communicator, "transport_rate");
 }
 
 TEST(Hops, AreFromRestToRestThroughPeriodicFacesAndFromRankToRank) {
@@ -90,8 +87,7 @@ TEST(Hops, HaveTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
     observe(shared, world, n, 0);
     if (n == 5) half_way = saved(alone, MPI_COMM_SELF);
   }
-  test::MemoryReader reader(half_way);
-  restarted.load(reader, "transport_rate", count);
+  test::load(restarted, half_way, "transport_rate", count);
   for (int n = 5; n < 12; ++n) observe(restarted, world, n, 0);  // 5 is seen again, as a restart does
   const test::MemoryArchive end = saved(alone, MPI_COMM_SELF);
   EXPECT_EQ(test::first_difference(end, saved(shared, world)), "");

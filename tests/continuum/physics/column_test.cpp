@@ -77,15 +77,12 @@ TEST(Column, MoreCellsThanAnIntHoldsAreRefused) {
 
 TEST(Column, AStateGoesOnInCellsOfItsOwnHeightOnly) {
   const ContinuumSystem column(MPI_COMM_SELF, coarse_column());
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, MPI_COMM_SELF);
-  column.save(writer);
+  const test::MemoryArchive archive = test::saved(column, MPI_COMM_SELF);
   const auto load_with_height = [&archive](double factor) {
     SystemParameters parameters = coarse_column();
     parameters.column.spacing *= factor;
     ContinuumSystem other(MPI_COMM_SELF, parameters);
-    test::MemoryReader reader(archive);
-    other.load(reader);
+    test::load(other, archive);
   };
   EXPECT_NO_THROW(load_with_height(1.0 + 1e-12));
   // Heights as for a slope of 0.0161 in place of 0.016, with as many cells.

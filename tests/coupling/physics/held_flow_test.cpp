@@ -43,12 +43,8 @@ TEST(HeldFlow, DrivesAGrainLikeTheFluidItDisplaces) {
 TEST(HeldFlow, GoesOnAfterARestart) {
   const auto straight = make_system<double>(starting_flow(true), MPI_COMM_SELF, {1, 1, 1});
   for (int step = 0; step < 37; ++step) straight->advance();
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, MPI_COMM_SELF);
-  straight->save(writer);
   const auto resumed = make_system<double>(starting_flow(true), MPI_COMM_SELF, {1, 1, 1});
-  test::MemoryReader reader(archive);
-  resumed->load(reader);
+  test::load(*resumed, test::saved(*straight, MPI_COMM_SELF));
   for (int step = 0; step < 30; ++step) {
     straight->advance();
     resumed->advance();

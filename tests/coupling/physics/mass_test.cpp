@@ -195,20 +195,13 @@ TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
   box.grain_stress = true;
   const auto whole = make<float>(box), first = make<float>(box), second = make<float>(box);
-  test::MemoryArchive half, end, continued;
   for (int step = 0; step < 70; ++step) {
     whole->advance();
     if (step < 31) first->advance();
   }
-  test::MemoryWriter to_half(half, MPI_COMM_WORLD), to_end(end, MPI_COMM_WORLD),
-      to_continued(continued, MPI_COMM_WORLD);
-  first->save(to_half);
-  test::MemoryReader from_half(half);
-  second->load(from_half);
+  test::load(*second, test::saved(*first, MPI_COMM_WORLD));
   for (int step = 31; step < 70; ++step) second->advance();
-  whole->save(to_end);
-  second->save(to_continued);
-  EXPECT_EQ(test::first_difference(end, continued), "");
+  EXPECT_EQ(test::first_difference(test::saved(*whole, MPI_COMM_WORLD), test::saved(*second, MPI_COMM_WORLD)), "");
   for (const char* name : {"mass_by_links", "mass_by_covered_cells", "mass_by_uncovered_cells", "mass_owed"})
     EXPECT_EQ(diagnostic(*whole, name), diagnostic(*second, name)) << name;
 }

@@ -81,14 +81,10 @@ test::MemoryArchive under_an_outlet_after(int steps, MPI_Comm communicator, cons
   LatticeSystem<Real> system(std::make_unique<Decomposition>(Index3{16, 17, 10}, 1.0, periodic, layout), communicator,
                              p);
   if (from) {
-    test::MemoryReader reader(*from);
-    system.load(reader);
+    test::load(system, *from);
   }
   for (int step = 0; step < steps; ++step) system.advance();
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  system.save(writer);
-  return archive;
+  return test::saved(system, communicator);
 }
 
 // The velocity at an outlet is that under the force of the last step, and the next one has another along both axes.
@@ -148,21 +144,14 @@ TEST(Ramp, GoesOnInItsMiddleWithTheSameBits) {
   box.clumps = {glass_clump(2, pebble(), Vec3(0.0121, 0.0146, 0.0046))};
   const auto whole = make_system<double>(box, MPI_COMM_WORLD, best_layout(box.cells));
   const auto again = make_system<double>(box, MPI_COMM_WORLD, best_layout(box.cells));
-  test::MemoryArchive middle, end, continued;
-  test::MemoryWriter to_middle(middle, MPI_COMM_WORLD), to_end(end, MPI_COMM_WORLD),
-      to_continued(continued, MPI_COMM_WORLD);
   for (int step = 0; step < 23; ++step) whole->advance();
-  whole->save(to_middle);
-  test::MemoryReader from_middle(middle);
-  again->load(from_middle);
+  test::load(*again, test::saved(*whole, MPI_COMM_WORLD));
   EXPECT_EQ(diagnostic(*again, "largest_lattice_velocity"), diagnostic(*whole, "largest_lattice_velocity"));
   for (int step = 23; step < 60; ++step) {
     whole->advance();
     again->advance();
   }
-  whole->save(to_end);
-  again->save(to_continued);
-  EXPECT_EQ(test::first_difference(end, continued), "");
+  EXPECT_EQ(test::first_difference(test::saved(*whole, MPI_COMM_WORLD), test::saved(*again, MPI_COMM_WORLD)), "");
 }
 
 }  // namespace

@@ -176,12 +176,8 @@ TEST(Lubrication, ActsBetweenTouchAndCutOffAlone) {
 // path h(t) m (v - v0) = -6 pi eta a^2 [ln(h_c/h) - (h_c - h)/h_c], whatever the time step: nothing is lost between
 // lists.
 TEST(Lubrication, SlowsASphereOnItsWayToAWallAsThePathSays) {
-  GrainParameters p;
-  p.contact = test::glass(0.9);
+  GrainParameters p = test::parameters(test::glass(0.9), 2e-6, 10, 1e-4);
   p.walls = face_planes(test::cube().box(), p.contact);
-  p.time_step = 2e-6;
-  p.sub_steps = 10;
-  p.skin = 1e-4;
   LubricationParameters lubrication = parameters();
   lubrication.viscosity = 0.05;
   lubrication.minimum_gap = 1e-3;

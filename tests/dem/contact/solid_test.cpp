@@ -24,12 +24,8 @@ Solid solid_of(const TriangleMesh& mesh, double friction = 0.5) {
 }
 
 GrainParameters with(std::vector<Solid> solids, double restitution = 1.0) {
-  GrainParameters p;
-  p.contact = test::glass(restitution);
+  GrainParameters p = test::parameters(test::glass(restitution), 5e-6, 25);
   p.solids = std::move(solids);
-  p.time_step = 5e-6;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
   return p;
 }
 

@@ -53,12 +53,8 @@ TEST(ContactFilm, OfTwoSpheresIsThatOfAWallAtTwiceTheSpeed) {
 // A sphere falls on the floor without weight: e.
 double rebound(const ContactParameters& contact, double speed) {
   const double dt = contact_time(contact.normal_stiffness, mass, 0.0) / 400.0;
-  GrainParameters p;
-  p.contact = contact;
+  GrainParameters p = test::parameters(contact, dt, 1, 5e-4);
   p.walls = {face_plane(test::cube().box(), 2, false, contact.wall_friction)};
-  p.time_step = dt;
-  p.sub_steps = 1;
-  p.skin = 5e-4;
   GrainDynamics grains(
       test::cube(), MPI_COMM_SELF, p,
       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius + 2.3 * dt * speed), Vec3(0, 0, -speed))});

@@ -64,15 +64,11 @@ TEST(LiquidBridge, PullIsThatOfWillett) {
 // One grain is held, the other swings towards it, touches, and swings back beyond the break.
 TEST(LiquidBridge, FormsAtATouchAndBreaksAtADistance) {
   const double breaks = std::cbrt(water.volume), deepest = 2e-6, swing = 0.5 * (1.5 * breaks + deepest);
-  GrainParameters p;
-  p.contact = moist(1.0);
+  GrainParameters p = test::parameters(moist(1.0), 1e-5, 1, 2e-4);
   p.contact.damping = 0.0, p.contact.restitution.reset();
   PrescribedMotion motion;  // starts at a gap of 1.5 s_c
   motion.oscillation = {Vec3(-swing, 0.0, 0.0), 10.0, -0.5 * pi};
   p.assemblies = {motion};
-  p.time_step = 1e-5;
-  p.sub_steps = 1;
-  p.skin = 2e-4;
   GrainSeed held = test::glass_sphere(0, Vec3(0.02, 0.025, 0.025));
   held.motion = Motion::fixed;
   GrainSeed moved = held;
@@ -115,11 +111,7 @@ TEST(LiquidBridge, BreakingItTakesItsEnergy) {
                work = work_to_break(water, test::glass_radius);
   const double critical = std::sqrt(4.0 * work / mass);  // m/s, of the approach: m*/2 v^2 = W
   const auto part_with = [&](double speed) {
-    GrainParameters p;
-    p.contact = moist(1.0);
-    p.time_step = 1e-6;
-    p.sub_steps = 50;
-    p.skin = 2e-4;
+    GrainParameters p = test::parameters(moist(1.0), 1e-6, 50, 2e-4);
     const Vec3 half = Vec3(0.5 * speed, 0.0, 0.0), first(0.02, 0.025, 0.025);
     GrainDynamics grains(test::cube(), MPI_COMM_SELF, p,
                          {test::glass_sphere(0, first, half),
@@ -141,15 +133,11 @@ TEST(LiquidBridge, BreakingItTakesItsEnergy) {
 TEST(LiquidBridge, HoldsAGrainAtACeiling) {
   const double weight = 9.81 * test::glass_sphere(0, Vec3::Zero()).contact_mass();
   const auto hangs = [&](double share) {
-    GrainParameters p;
-    p.contact = moist(0.5);
+    GrainParameters p = test::parameters(moist(0.5), 5e-6, 20, 2e-4);
     p.contact.liquid_bridge->surface_tension = share * weight / (4.0 * pi * test::glass_radius);
     const PeriodicBox box = test::cube().box();
     p.walls = face_planes(box, p.contact);
     p.body_force = [](double mass, double) { return Vec3(0.0, 0.0, -9.81 * mass); };
-    p.time_step = 5e-6;
-    p.sub_steps = 20;
-    p.skin = 2e-4;
     GrainDynamics grains(
         test::cube(), MPI_COMM_SELF, p,
         {test::glass_sphere(0, Vec3(0.025, 0.025, box.size[2] - test::glass_radius - 1e-8), Vec3(0.0, 0.0, 1e-3))});
@@ -184,13 +172,9 @@ int groups(const GrainDynamics& grains) {
 // less kinetic energy than any of its 54 bridges takes to break.
 TEST(LiquidBridge, HoldsACubeOfGrainsTogether) {
   const auto shaken = [](bool wet) {
-    GrainParameters p;
-    p.contact = moist(0.7);
+    GrainParameters p = test::parameters(moist(0.7), 5e-6, 20, 5e-4);
     if (!wet) p.contact.liquid_bridge.reset();
     p.contact.friction = 0.5;
-    p.time_step = 5e-6;
-    p.sub_steps = 20;
-    p.skin = 5e-4;
     std::vector<GrainSeed> seeds;
     Vec3 mean = Vec3::Zero();
     for (int n = 0; n < 27; ++n) {

@@ -121,14 +121,10 @@ TEST(Mixing, ModuliKeepTheirOwners) {
 
 TEST(Mixing, GrainsOfTwoMaterialsAndAWallPartWithTheirRestitutions) {
   // 0 on 1: sqrt(0.9 0.4) = 0.6; both on the wall: 0.7. Slow impacts at 1400 steps a contact: error of first order.
-  GrainParameters p;
-  p.contact = test::glass(0.9);
+  GrainParameters p = test::parameters(test::glass(0.9), 1.5e-7, 50);
   p.other_materials = {test::glass(0.4)};
   p.wall_contact = test::glass(0.7);
   p.walls = {face_plane(test::cube().box(), 2, false, 0.0)};
-  p.time_step = 1.5e-7;
-  p.sub_steps = 50;
-  p.skin = 1e-3;
   const double apart = 2.0 * test::glass_radius + 1e-6;
   std::vector<GrainSeed> seeds{test::glass_sphere(0, Vec3(0.01, 0.01, 0.02), Vec3(0.1, 0, 0)),
                                test::glass_sphere(1, Vec3(0.01 + apart, 0.01, 0.02)),

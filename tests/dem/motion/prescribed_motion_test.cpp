@@ -22,11 +22,7 @@ double verlet_error(const GrainParameters& p, double effective_mass) {
 }
 
 GrainParameters elastic() {
-  GrainParameters p;
-  p.contact = test::glass(1.0);
-  p.time_step = 2e-6;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
+  GrainParameters p = test::parameters(test::glass(1.0), 2e-6, 25);
   return p;
 }
 
@@ -113,12 +109,8 @@ TEST(MovingPlane, GrainsMayFollowItOutOfTheBoxButNotBeyondIt) {
   for (int n = 0; n < 2000; ++n) test::step(lowered);  // 0.1 s
   const double weight = 9.8 * lowered.store().mass[0];
   EXPECT_NEAR(lowered.store().position[0][2], test::glass_radius - 0.01 - weight / 20000.0, 1e-9);
-  thalweg::test::MemoryArchive archive;
-  thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
-  lowered.save(writer);
   GrainDynamics loaded(test::cube(), MPI_COMM_SELF, p, GrainSeeds{});
-  thalweg::test::MemoryReader reader(archive);
-  loaded.load(reader);
+  thalweg::test::load(loaded, thalweg::test::saved(lowered, MPI_COMM_SELF));
   EXPECT_EQ(loaded.walls()[0].point, lowered.walls()[0].point);
 
   // Two plates pass through each other with a grain in between.

@@ -34,12 +34,8 @@ TEST(NewContactLaw, HasItsKey) {
 }
 
 GrainParameters with_adhesion(double work) {
-  GrainParameters p;
-  p.contact = test::glass(0.3);
+  GrainParameters p = test::parameters(test::glass(0.3), 5e-6, 20);
   p.contact.work_of_adhesion = work;
-  p.time_step = 5e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   p.initial_overlap = 1e-3;
   return p;
 }

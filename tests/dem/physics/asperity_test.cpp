@@ -65,14 +65,10 @@ bool slides(const Model& m, double friction) {
   const double angle = pair.lean() - std::atan(friction);  // of what the load is opposite to, from the upright
   const Vec3 load = -weight_per_mass * Vec3(std::sin(angle), 0.0, std::cos(angle));
 
-  GrainParameters p;
-  p.contact = test::glass(0.3);
+  GrainParameters p = test::parameters(test::glass(0.3), 2e-6, 50, 0.1 * diameter);
   p.contact.normal_stiffness = 1000.0;
   p.contact.tangential_stiffness = 1000.0;
   p.contact.friction = 0.0;
-  p.time_step = 2e-6;
-  p.sub_steps = 50;
-  p.skin = 0.1 * diameter;
   p.disk_thickness = thickness;
   p.body_force = [load](double mass, double /*radius*/) { return Vec3(mass * load); };
 

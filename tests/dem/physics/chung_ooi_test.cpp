@@ -25,12 +25,8 @@ ContactParameters elastic(double youngs_modulus, double poisson_ratio, double fr
 }
 
 GrainSeed sphere(GlobalId id, const Vec3& position, const Vec3& velocity, double radius, double density) {
-  GrainSeed seed;
-  seed.id = id;
-  seed.radius = radius;
+  GrainSeed seed = test::glass_sphere(id, position, velocity, radius);
   seed.density = density;
-  seed.position = position;
-  seed.velocity = velocity;
   return seed;
 }
 
@@ -38,14 +34,10 @@ GrainSeed sphere(GlobalId id, const Vec3& position, const Vec3& velocity, double
 Decomposition room(double radius) { return Decomposition({20, 20, 20}, 0.5 * radius, {true, true, false}, {1, 1, 1}); }
 
 GrainParameters parameters_of(const ContactParameters& contact, const Decomposition& decomposition, double time_step) {
-  GrainParameters p;
-  p.contact = contact;
+  GrainParameters p = test::parameters(contact, time_step, 1, 0.2 * decomposition.spacing());
   p.walls = {face_plane(decomposition.box(), 2, false, contact.wall_friction)};
   p.wall_contact = contact;  // rigid: so stiff that the wall gives way by less than rounding
   p.wall_contact->youngs_modulus = 1e30;
-  p.time_step = time_step;
-  p.sub_steps = 1;
-  p.skin = 0.2 * decomposition.spacing();
   return p;
 }
 

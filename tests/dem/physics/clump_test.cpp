@@ -28,11 +28,7 @@ constexpr double epsilon = 2.2e-16;
 Decomposition room() { return Decomposition({20, 20, 20}, 2.5e-3, {false, false, false}, {1, 1, 1}); }
 
 GrainParameters free_flight(double time_step, int sub_steps = 10) {
-  GrainParameters p;
-  p.contact = glass(0.9);
-  p.time_step = time_step;
-  p.sub_steps = sub_steps;
-  p.skin = 1e-3;
+  GrainParameters p = test::parameters(glass(0.9), time_step, sub_steps);
   return p;
 }
 

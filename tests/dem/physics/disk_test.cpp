@@ -21,14 +21,10 @@ GrainSeed disk(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Z
 }
 
 GrainParameters disk_parameters(double restitution, double friction, const Vec3& g) {
-  GrainParameters p;
-  p.contact = test::glass(restitution);
+  GrainParameters p = test::parameters(test::glass(restitution), 2e-6, 50);
   p.contact.friction = p.contact.wall_friction = friction;
   p.walls = face_planes(test::cube().box(), p.contact);
   p.body_force = [g](double mass, double) { return Vec3(mass * g); };
-  p.time_step = 2e-6;
-  p.sub_steps = 50;
-  p.skin = 1e-3;
   p.disk_thickness = thickness;
   p.initial_overlap = 0.01;
   return p;

@@ -16,12 +16,8 @@ namespace {
 constexpr double gravity = 9.81;
 
 GrainParameters parameters_of(Integrator integrator, double restitution, double time_step, double g) {
-  GrainParameters p;
-  p.contact = test::glass(restitution, true);
+  GrainParameters p = test::parameters(test::glass(restitution, true), time_step, 1, 5e-4);
   p.walls = {face_plane(test::cube().box(), 2, false, 0.0)};
-  p.time_step = time_step;
-  p.sub_steps = 1;
-  p.skin = 5e-4;
   p.integrator = integrator;
   p.initial_overlap = 0.3;
   if (g > 0.0) p.body_force = [g](double mass, double) { return Vec3(0, 0, -mass * g); };
@@ -126,9 +122,7 @@ TEST(Gear, DoesNotTakeOtherColumnsForItsOwn) {
   p.attached_width = 24 + GearPredictor::columns;
   GrainDynamics other(test::cube(), MPI_COMM_SELF, p, {seed});
   std::fill(other.store().attached.begin(), other.store().attached.end(), 7.0);
-  thalweg::test::MemoryArchive archive;
-  thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
-  other.save(writer);
+  const thalweg::test::MemoryArchive archive = thalweg::test::saved(other, MPI_COMM_SELF);
   const auto taken = [&archive, &p] {
     GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, GrainSeeds{});
     thalweg::test::MemoryReader reader(archive);

@@ -31,11 +31,7 @@ std::vector<GrainSeed> spread(const PeriodicBox& box, int count, double largest_
 
 TEST(Cloud, ConservesMomentumToRoundOff) {
   const Decomposition decomposition = tray(true);
-  GrainParameters p;
-  p.contact = test::glass(0.93);
-  p.time_step = 4e-6;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
+  GrainParameters p = test::parameters(test::glass(0.93), 4e-6, 25);
   GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, spread(decomposition.box(), 80, 1.0));
   const Vec3 start = grains.momentum();
   const double energy = grains.kinetic_energy();
@@ -50,13 +46,9 @@ TEST(Cloud, ConservesMomentumToRoundOff) {
 TEST(Settling, GrainsComeToRestAndTheFloorCarriesTheirWeight) {
   const Decomposition decomposition = tray(false);
   const double g = 9.8;
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), 9e-6, 20);
   p.walls = {face_plane(decomposition.box(), 2, false, 0.5)};
   p.body_force = [g](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
-  p.time_step = 9e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   GrainDynamics grains(decomposition, MPI_COMM_WORLD, p, spread(decomposition.box(), 100, 0.1));
   for (int n = 0; n < 3000; ++n) test::step(grains);  // 0.54 s; the highest falls 60 mm in 0.11 s
 
@@ -85,13 +77,9 @@ TEST(Settling, GrainsComeToRestAndTheFloorCarriesTheirWeight) {
 TEST(Rolling, SlidingTurnsIntoRollingAtFiveSevenths) {
   // A sphere set down sliding on a plane rolls after 2 u0/(7 mu g) at 5 u0/7, whatever the friction.
   const double g = 9.8, u0 = 0.1, weight = g * test::glass_sphere(0, Vec3::Zero()).mass();
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), 1e-5, 25);
   p.walls = {face_plane(test::cube().box(), 2, false, 0.3)};
   p.body_force = [g](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
-  p.time_step = 1e-5;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
   const double height = test::glass_radius - weight / p.contact.normal_stiffness * 0.06;  // within the allowed overlap
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, p,
                        {test::glass_sphere(0, Vec3(0.01, 0.025, height), Vec3(u0, 0.0, 0.0))});
@@ -110,11 +98,7 @@ TEST(Rolling, SlidingTurnsIntoRollingAtFiveSevenths) {
 }
 
 TEST(HeldGrains, KeepTheVelocityTheyWereGivenAndPushOthers) {
-  GrainParameters p;
-  p.contact = test::glass(1.0);
-  p.time_step = 2e-6;
-  p.sub_steps = 50;
-  p.skin = 1e-3;
+  GrainParameters p = test::parameters(test::glass(1.0), 2e-6, 50);
   GrainSeed still = test::glass_sphere(0, Vec3(0.030, 0.025, 0.025));
   still.motion = Motion::fixed;
   GrainSeed piston = test::glass_sphere(1, Vec3(0.010, 0.010, 0.025), Vec3(0.2, 0.0, 0.0));
@@ -145,13 +129,9 @@ TEST(HeldGrains, KeepTheVelocityTheyWereGivenAndPushOthers) {
 TEST(MovingWall, DragsTheGrainThatLiesOnIt) {
   // A belt under a grain that weighs on it: rolling without slip, against the belt, at 2/7 of its velocity.
   const double g = 9.8, belt = 0.05;
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), 1e-5, 25);
   p.walls = {face_plane(test::cube().box(), 2, false, 0.5, Vec3(belt, 0.0, 0.0))};
   p.body_force = [g](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
-  p.time_step = 1e-5;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, {test::glass_sphere(0, Vec3(0.02, 0.02, test::glass_radius))});
   for (int n = 0; n < 400; ++n) test::step(grains);
   // From rest the slip belt -> 0 gives u = 2/7 belt; the undamped spring swings by mu g/omega_t = 7e-4 m/s at most.

@@ -19,12 +19,8 @@ struct Outcome {
 };
 
 GrainParameters impact_parameters(const ContactParameters& contact, double time_step) {
-  GrainParameters p;
-  p.contact = contact;
+  GrainParameters p = test::parameters(contact, time_step, 1, 5e-4);
   p.walls = {face_plane(test::cube().box(), 2, false, contact.wall_friction)};
-  p.time_step = time_step;
-  p.sub_steps = 1;
-  p.skin = 5e-4;
   return p;
 }
 

@@ -154,12 +154,7 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
       test::cube(), MPI_COMM_SELF, p,
       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius + 1e-9), Vec3(1e-4, 0.0, -normal_speed))});
   for (int n = 0; n < 5; ++n) test::step(linear);
-  const auto saved = [](const GrainDynamics& grains) {
-    thalweg::test::MemoryArchive archive;
-    thalweg::test::MemoryWriter writer(archive, MPI_COMM_SELF);
-    grains.save(writer);
-    return archive;
-  };
+  const auto saved = [](const GrainDynamics& grains) { return thalweg::test::saved(grains, MPI_COMM_SELF); };
   const auto largest = [](const thalweg::test::MemoryArchive& archive, const char* name) {
     double value = -1.0;
     for (const double x : std::get<std::vector<double>>(archive.datasets.at(name).values))
@@ -170,8 +165,7 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   EXPECT_GT(largest(archive, "grains/contact_spring"), 0.0);
   const auto restarted = [&archive](const GrainParameters& with) {
     auto grains = std::make_unique<GrainDynamics>(test::cube(), MPI_COMM_SELF, with, GrainSeeds{});
-    thalweg::test::MemoryReader reader(archive);
-    grains->load(reader);
+    thalweg::test::load(*grains, archive);
     return grains;
   };
   EXPECT_EQ(thalweg::test::first_difference(saved(*restarted(p)), archive), "");

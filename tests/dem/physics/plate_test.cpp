@@ -23,12 +23,8 @@ Plane plate(const Vec3& point, double half_length, double half_width, const Vec3
 }
 
 GrainParameters with(std::vector<Plane> walls, double restitution = 1.0) {
-  GrainParameters p;
-  p.contact = test::glass(restitution);
+  GrainParameters p = test::parameters(test::glass(restitution), 2e-6, 25);
   p.walls = std::move(walls);
-  p.time_step = 2e-6;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
   return p;
 }
 

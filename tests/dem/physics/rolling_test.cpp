@@ -26,17 +26,13 @@ ContactParameters rough_glass(bool elastic) {
 
 // A sphere on a floor under gravity that leans by `slope` towards +x.
 GrainParameters on_floor(bool elastic, double rolling_friction, double slope) {
-  GrainParameters p;
-  p.contact = rough_glass(elastic);
+  GrainParameters p = test::parameters(rough_glass(elastic), 1e-5, 25);
   p.walls = {face_plane(test::cube().box(), 2, false, 0.5)};
   p.walls[0].rolling_friction = rolling_friction;
   const double angle = std::atan(slope);
   p.body_force = [angle](double mass, double) {
     return Vec3(mass * g * std::sin(angle), 0.0, -mass * g * std::cos(angle));
   };
-  p.time_step = 1e-5;
-  p.sub_steps = 25;
-  p.skin = 1e-3;
   return p;
 }
 
@@ -103,12 +99,8 @@ TEST(RollingFriction, LetsASphereRollOnASteeperSlope) {
 
 TEST(RollingFriction, PairsKeepMomentumAndAngularMomentum) {
   for (const bool elastic : {false, true}) {
-    GrainParameters p;
-    p.contact = rough_glass(elastic);
+    GrainParameters p = test::parameters(rough_glass(elastic), 2e-6, 25);
     p.contact.rolling_friction = 0.2;
-    p.time_step = 2e-6;
-    p.sub_steps = 25;
-    p.skin = 1e-3;
     GrainSeed a = test::glass_sphere(0, Vec3(0.020, 0.025, 0.025), Vec3(0.2, 0.01, 0.0));
     GrainSeed b = test::glass_sphere(1, Vec3(0.0245, 0.0255, 0.025), Vec3(-0.2, 0.0, 0.02), 0.8 * test::glass_radius);
     a.angular_velocity = Vec3(3.0, 40.0, -20.0);

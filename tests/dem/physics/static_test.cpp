@@ -15,13 +15,9 @@ constexpr double g = 9.8;  // m/s^2
 double glass_mass() { return test::glass_sphere(0, Vec3::Zero()).mass(); }
 
 GrainParameters on_floor(const ContactParameters& contact, const Vec3& gravity) {
-  GrainParameters p;
-  p.contact = contact;
+  GrainParameters p = test::parameters(contact, 5e-6, 20);
   p.walls = {face_plane(test::cube().box(), 2, false, contact.wall_friction)};
   p.body_force = [gravity](double mass, double) -> Vec3 { return mass * gravity; };
-  p.time_step = 5e-6;
-  p.sub_steps = 20;
-  p.skin = 1e-3;
   p.initial_overlap = 1e-3;
   return p;
 }
@@ -148,13 +144,9 @@ TEST(Bed, AtRestStaysAtRestForAMillionSteps) {
   const Decomposition pit({8, 8, 16}, 1.25e-3 * 1.02, {false, false, false}, {1, 1, 1});  // two by two diameters
   ContactParameters contact = test::glass(0.3);
   contact.tangential_damping = 1.0;
-  GrainParameters p;
-  p.contact = contact;
+  GrainParameters p = test::parameters(contact, 8e-6, 50);
   p.walls = face_planes(pit.box(), contact);
   p.body_force = [](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
-  p.time_step = 8e-6;
-  p.sub_steps = 50;
-  p.skin = 1e-3;
   std::vector<GrainSeed> seeds;
   for (const Vec3& place : beds::uniform_packing(pit.box(), beds::whole(pit.box()), 12, test::glass_radius, 0.0, 7))
     seeds.push_back(test::glass_sphere(static_cast<GlobalId>(seeds.size()), place));

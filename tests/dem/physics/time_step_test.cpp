@@ -37,14 +37,10 @@ TEST_P(LongestStep, GainsNoEnergy) {
   const double longest = longest_wall_step(material, material, mass, test::glass_radius);
   EXPECT_NO_THROW(check_wall_time_step(material, material, mass, test::glass_radius, 0.999 * longest));
   EXPECT_THROW(check_wall_time_step(material, material, mass, test::glass_radius, 1.001 * longest), InputError);
-  GrainParameters p;
-  p.contact = material;
+  GrainParameters p = test::parameters(material, longest, 1);
   p.walls = {face_plane(test::cube().box(), 2, false, material.wall_friction)};
   p.walls[0].rolling_friction = material.wall_rolling_friction;
   p.body_force = [](double of, double) { return Vec3(0.0, 0.0, -of * g); };
-  p.time_step = longest;
-  p.sub_steps = 1;
-  p.skin = 1e-3;
   const double speed = 1e-4;
   GrainSeed seed = test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius), Vec3(speed, 0.0, -speed));
   seed.angular_velocity = Vec3(0.0, -speed / test::glass_radius, 0.0);

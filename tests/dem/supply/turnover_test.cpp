@@ -47,15 +47,11 @@ Supply clumps(double mass_rate) {
 constexpr double clump_mass_rate = 0.02;  // kg/s
 
 GrainParameters parameters() {
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), 2.5e-5, 10);
   p.contact.normal_stiffness = 500.0;  // so that a step of 25 us is short enough
   p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
   p.walls = face_planes(box_on(1).box(), p.contact);
   p.body_force = [](double mass, double) { return Vec3(mass * Vec3(2.0, 0.0, -15.0)); };
-  p.time_step = 2.5e-5;
-  p.sub_steps = 10;
-  p.skin = 1e-3;
   p.ghost_width = 3e-3;
   p.attached_width = 1;
   return p;
@@ -98,12 +94,7 @@ double diagnostic(const GrainDynamics& grains, const std::string& name) {
   return find_diagnostic(grains.turnover_diagnostics(), name).value();
 }
 
-thalweg::test::MemoryArchive saved(const GrainDynamics& grains, MPI_Comm communicator) {
-  thalweg::test::MemoryArchive archive;
-  thalweg::test::MemoryWriter writer(archive, communicator);
-  grains.save(writer);
-  return archive;
-}
+using thalweg::test::saved;
 
 std::vector<GlobalId> all_ids(const GrainDynamics& grains) {
   const GrainStore& store = grains.store();
@@ -132,8 +123,7 @@ TEST(Turnover, SameBitsOnAnyRanksAndAfterARestart) {
   EXPECT_EQ(thalweg::test::first_difference(saved(grains, MPI_COMM_WORLD), reference), "");
 
   GrainDynamics restarted(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, GrainSeeds{});
-  thalweg::test::MemoryReader reader(half);
-  restarted.load(reader);
+  thalweg::test::load(restarted, half);
   EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "");
   run(restarted, steps / 2);
   EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), reference), "");

@@ -57,14 +57,10 @@ test::MemoryArchive state_after(int steps, const Channel& channel, MPI_Comm comm
   Fluid<Real> fluid(decomposition, communicator, viscous(), channel.faces);
   fluid.control_flow({0, 0.02, 50.0, 4});
   if (from) {
-    test::MemoryReader reader(*from);
-    fluid.load(reader);
+    test::load(fluid, *from);
   }
   for (int step = 0; step < steps; ++step) fluid.advance();
-  test::MemoryArchive archive;
-  test::MemoryWriter writer(archive, communicator);
-  fluid.save(writer);
-  return archive;
+  return test::saved(fluid, communicator);
 }
 
 TEST(FlowControl, RestartsToTheSameBitsOnAnyRanks) {

@@ -25,12 +25,7 @@ public:
   void set(Flow flow) {
     fluid_.initialise([&](const Vec3& centre) { return flow(fraction(centre)); });
   }
-  test::MemoryArchive saved() const {
-    test::MemoryArchive archive;
-    test::MemoryWriter writer(archive, MPI_COMM_WORLD);
-    fluid_.save(writer);
-    return archive;
-  }
+  test::MemoryArchive saved() const { return test::saved(fluid_, MPI_COMM_WORLD); }
   // The largest differences of velocity and density from a flow.
   std::array<double, 2> differences(Flow flow) const {
     double velocity = 0.0, density = 0.0;
@@ -136,9 +131,7 @@ TEST(FlowTransfer, IsTheSameOnEveryNumberOfRanks) {
   Fluid<double> alone(whole, MPI_COMM_SELF, {}, {});
   test::MemoryReader again(archive);
   transfer_flow(alone, again, 0.7);
-  test::MemoryArchive of_one;
-  test::MemoryWriter writer(of_one, MPI_COMM_SELF);
-  alone.save(writer);
+  const test::MemoryArchive of_one = test::saved(alone, MPI_COMM_SELF);
   EXPECT_EQ(test::first_difference(target.saved(), of_one), "");
 }
 

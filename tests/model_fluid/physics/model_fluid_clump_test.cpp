@@ -48,12 +48,8 @@ void allow_clumps(ModelFluidParameters& parameters, const ClumpShape& shape) {
 }
 
 GrainParameters grains_in(const ModelFluidParameters& fluid, const Decomposition& box) {
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), 2e-6, 50, glass_radius);
   p.contact.friction = p.contact.wall_friction = 0.0;
-  p.time_step = 2e-6;
-  p.sub_steps = 50;
-  p.skin = glass_radius;
   p.walls = face_planes(box.box(), p.contact);
   p.walls[0].rough = true;
   p.body_force = [](double mass, double /*radius*/) { return Vec3(0.0, 0.0, -mass * gravity); };

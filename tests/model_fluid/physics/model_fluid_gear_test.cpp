@@ -32,14 +32,10 @@ ModelFluidParameters slow_fluid(double gravity) {
 GrainDynamics sphere_in(const ModelFluidParameters& fluid, const Vec3& place, const Vec3& velocity, double fall,
                         double time_step, bool rough_floor = false) {
   const Decomposition box = test::cube();
-  GrainParameters p;
-  p.contact = test::glass(0.5);
+  GrainParameters p = test::parameters(test::glass(0.5), time_step, 1, glass_radius);
   p.contact.normal_stiffness = 20.0;  // a contact of many steps
   p.contact.tangential_stiffness = 6.0;
   p.integrator = Integrator::gear;
-  p.time_step = time_step;
-  p.sub_steps = 1;
-  p.skin = glass_radius;
   p.walls = face_planes(box.box(), p.contact);
   p.walls[0].rough = rough_floor;
   p.body_force = [fall](double mass, double /*radius*/) { return Vec3(0.0, 0.0, -mass * fall); };
