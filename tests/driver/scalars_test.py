@@ -7,13 +7,11 @@ text, a whole number, a real number and a truth value, once in the case file and
 program must refuse both or make the same of them, as the case.yaml of the run shows.
 """
 import sys
-import unittest
 from pathlib import Path
 
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from program import ProgramTest
 from thalweg.case_file import CaseLoader, WordLoader, setting_of

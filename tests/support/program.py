@@ -1,6 +1,7 @@
 """What every test of the whole program needs: a folder of its own, a case in it, and ways to run and to be refused.
 
-A test script is called THE_SCRIPT THALWEG MPIEXEC [unittest arguments]; it ends with program.main().
+A test script is called THE_SCRIPT THALWEG MPIEXEC [unittest arguments]; it ends with program.main(). Behind its import
+of this module it finds Thalweg's Python package.
 """
 import csv
 import io
@@ -14,6 +15,8 @@ from pathlib import Path
 
 import h5py
 import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 THALWEG, MPIEXEC = sys.argv[1:3]
 
@@ -126,6 +129,12 @@ class ProgramTest(unittest.TestCase):
     def last_checkpoint(self, run):
         checkpoints = self.folder / run / "checkpoints"
         return checkpoints / (checkpoints / "latest").read_text().strip()
+
+    def assert_same_end(self, run, other, *files):
+        """The last checkpoints of both runs have the same bytes, and so have these files of theirs."""
+        for one, two in ((self.last_checkpoint(run), self.last_checkpoint(other)),
+                         *((self.folder / run / file, self.folder / other / file) for file in files)):
+            self.assertTrue(one.read_bytes() == two.read_bytes(), f"{one} and {two} differ")
 
     def assert_same_state(self, watched, alone):
         """All that the last checkpoint of `alone` holds of grains and fluid has the same bits in that of `watched`."""

@@ -11,7 +11,6 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 from program import ProgramTest
 from thalweg import Run
@@ -131,7 +130,7 @@ output:
         # Nothing that is looked at changes the run.
         self.run_well("run", self.case, "--out", "unseen", "--set", "output.grain_parts=[]", "--set",
                       "output.grains.every=0")
-        self.assertEqual(self.last_checkpoint("unseen").read_bytes(), self.last_checkpoint("one").read_bytes())
+        self.assert_same_end("unseen", "one")
 
     def test_frames_with_some_fields_only(self):
         self.run_well(

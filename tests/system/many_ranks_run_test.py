@@ -45,12 +45,8 @@ analysis:
 """
 
     def expect_the_same(self, out):
-        self.assertEqual(self.last_checkpoint(out).read_bytes(), self.last_checkpoint("one").read_bytes(), out)
-        for name in ["series.csv", *(str(path.relative_to(self.folder / "one")) for path in
-                                     sorted((self.folder / "one").glob("*/*.vt?")))]:
-            self.assertEqual(
-                (self.folder / out / name).read_bytes(), (self.folder / "one" / name).read_bytes(), f"{out}: {name}"
-            )
+        frames = (path.relative_to(self.folder / "one") for path in sorted((self.folder / "one").glob("*/*.vt?")))
+        self.assert_same_end(out, "one", "series.csv", *frames)
 
     def test_the_same_bits(self):
         self.run_well("run", self.case, "--out", "one")

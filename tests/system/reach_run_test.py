@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import program
 import thalweg
 from program import ProgramTest

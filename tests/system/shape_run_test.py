@@ -12,7 +12,7 @@ import h5py
 import numpy
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
+sys.path.insert(0, str(ROOT / "tests/support"))
 import program
 from program import ProgramTest
 
@@ -60,13 +60,13 @@ output: {checkpoint: {every: 0.01}}
         self.assertEqual((source["key"], source["path"]), ("grains.0.shape.stl", "../triaxial.stl"))
         (self.folder / "triaxial.stl").unlink()
         self.run_well("run", kept, "--out", "again")
-        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("again").read_bytes())
+        self.assert_same_end("run", "again")
 
     def test_restarts_and_two_ranks_have_the_same_bits(self):
         self.run_well("run", self.case)
         self.run_well("run", self.case, "--until", "0.01", "--out", "parts")
         self.run_well("run", self.case, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=2)
-        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("parts").read_bytes())
+        self.assert_same_end("run", "parts")
 
     SIZES = ("--set", "grains.0.shape={stl: triaxial.stl, spheres: 6}", "--set",
              "grains.0.diameter={sieve: {sizes: [2.5e-3, 5.0e-3], finer: [0, 1]}}")
@@ -86,7 +86,7 @@ output: {checkpoint: {every: 0.01}}
         self.run_well("run", self.case, *self.SIZES, "--until", "0.01", "--out", "parts", ranks=2)
         self.run_well("run", self.case, *self.SIZES, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=4)
         for other in ("again", "parts"):
-            self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
+            self.assert_same_end("run", other)
 
     def test_size_classes_and_supplies_take_clumps_by_their_size(self):
         """Eight clumps of 3 and 4 mm and those that come in: a class has the share of its number times d^3."""
@@ -104,7 +104,7 @@ output: {checkpoint: {every: 0.01}}
         share = self.summary("run")["fractional_transport"]["class_0_bed_share"]
         self.assertAlmostEqual(share, 27.0 * fine / (27.0 * fine + 64.0 * coarse), delta=1e-9)
         self.run_well("run", self.case, *mixed, "--out", "two", ranks=2)
-        self.assertEqual(self.last_checkpoint("run").read_bytes(), self.last_checkpoint("two").read_bytes())
+        self.assert_same_end("run", "two")
 
     def test_a_bed_keeps_mass_and_moments_of_the_surfaces(self):
         self.run_well("run", self.case, *self.SIZES)
@@ -124,7 +124,7 @@ output: {checkpoint: {every: 0.01}}
         (self.folder / "run/bed.h5").unlink()
         self.run_well("run", self.case, "--set", bed, "--restart", "parts", "--out", "parts", "--until", "0.02", ranks=2)
         for other in ("two", "parts"):
-            self.assertEqual(self.last_checkpoint("more").read_bytes(), self.last_checkpoint(other).read_bytes(), other)
+            self.assert_same_end("more", other)
 
     def test_a_clump_is_described_and_written(self):
         done = self.thalweg("clump", "prolate.stl", "--spheres", "5", "--scale", str(DIAMETER))

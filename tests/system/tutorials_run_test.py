@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "python")]
+sys.path.insert(0, str(ROOT / "tests/support"))
 import program
 from program import ProgramTest
 from thalweg.case_file import read_case

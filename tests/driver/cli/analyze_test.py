@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "python"))
 import program
 import thalweg
 from program import TUMBLING_GRAINS, ProgramTest
