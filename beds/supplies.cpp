@@ -57,6 +57,21 @@ private:
   mutable std::vector<std::size_t> order_;
 };
 
+// Above the floor, the lowest bed there is.
+void check_heights(const AboveBedKeys& above_bed, const RegionKeys& region, double diameter) {
+  if (above_bed.upper < 0.5 * diameter)
+    throw KeyError("above_bed.upper",
+                   fmt::format("it is of the centre, and so low a grain of {:.4g} m touches the bed; give at least its "
+                               "radius, {:.4g} m",
+                               diameter, 0.5 * diameter));
+  if (above_bed.lower > region.upper.z())
+    throw KeyError(
+        "above_bed.lower",
+        fmt::format("however low the bed is, that is above the region, which ends at {:g} m; give less, or a "
+                    "higher region.upper",
+                    region.upper.z()));
+}
+
 }  // namespace
 
 void check(const SupplyKeys& supply, std::span<const Population> populations, const Vec3& box_size) {
@@ -76,6 +91,9 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
                    "its clumps are from a file and have no common shape; give the number of a population "
                    "with a shape, or of spheres");
   check(supply.region, box_size, "region", true);
+  if (supply.above_bed)
+    check_heights(*supply.above_bed, supply.region,
+                  population.shape ? population.smallest_diameter() : population.largest_diameter());
 }
 
 void check(const SinkKeys& sink, const Vec3& box_size) {
@@ -93,6 +111,7 @@ dem::Supply supply_of(const SupplyKeys& keys, std::span<const Population> popula
   const Population& population = populations[number];
   dem::Supply supply;
   supply.entrance = {zone_of(keys.region, population.thickness > 0.0, box_size), keys.velocity, keys.seed};
+  if (keys.above_bed) supply.entrance.above_bed = {keys.above_bed->lower, keys.above_bed->upper};
   supply.by_mass = !keys.rate;
   supply.rate = keys.rate ? *keys.rate : keys.mass_rate ? *keys.mass_rate : *keys.transport_rate * unit_mass_rate;
   supply.from = keys.from;

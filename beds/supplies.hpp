@@ -9,7 +9,8 @@
 
 namespace thalweg::beds {
 
-// Throws KeyError where the population cannot be supplied, or a region reaches out of a box of this size (m).
+// Throws KeyError where the population cannot be supplied, a region reaches out of a box of this size (m), or no grain
+// can come in at its heights above the bed.
 void check(const SupplyKeys& supply, std::span<const Population> populations, const Vec3& box_size);
 void check(const SinkKeys& sink, const Vec3& box_size);
 

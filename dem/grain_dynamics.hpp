@@ -110,7 +110,7 @@ public:
 
   // Takes grains in sinks out of the box and brings in those that are due, before prepare(). True if slots changed.
   // fluid_velocity: m/s, at a point that this rank owns, for those that come in with it; empty: they come in at rest.
-  // Without sinks and supplies it does nothing; with them it is one reduction, or two. Collective.
+  // Without sinks and supplies it does nothing; with them it is up to three reductions. Collective.
   bool turn_over(const std::function<Vec3(const Vec3& point)>& fluid_velocity = {});
 
   // Prepares the sub-steps of a fluid step: wraps positions and, if some grain may leave its half skin during them,
@@ -256,6 +256,7 @@ private:
     bool keeps_motion;
   };
   std::vector<char> slots_in_sinks() const;
+  std::vector<char> slots_in_bed() const;
   std::vector<TravellingBody> take_leaving(std::span<const char> leaves) const;
   void exchange_bodies(std::span<const char> leaves, std::span<const TravellingBody> leaving,
                        std::span<const Arrival> arriving, const std::function<Vec3(const Vec3&)>& fluid_velocity);

@@ -2,6 +2,7 @@
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/whole_dataset.hpp"
+#include "dem/contact/wall_touches.hpp"
 #include "dem/grain_dynamics.hpp"
 #include "dem/ranks/grain_archive.hpp"
 
@@ -28,9 +29,12 @@ bool GrainDynamics::turn_over(const std::function<Vec3(const Vec3&)>& fluid_velo
 
   std::vector<Arrival> arriving;
   if (!seekers.empty()) {
-    const std::vector<std::optional<FreePlace>> places =
-        free_places(seekers, store_, leaves, {box_, planes_, solids_, parameters_.solids},
-                    static_cast<std::uint64_t>(steps_done_), communicator_);
+    const bool above_bed = std::any_of(seekers.begin(), seekers.end(), [](const PlaceSeeker& seeker) {
+      return seeker.entrance->above_bed.has_value();
+    });
+    const std::vector<char> in_bed = above_bed ? slots_in_bed() : std::vector<char>(store_.owned);
+    const std::vector<std::optional<FreePlace>> places = free_places(
+        seekers, {store_, leaves, in_bed}, surroundings(), static_cast<std::uint64_t>(steps_done_), communicator_);
     turnover_.enter(seekers, places);
     for (std::size_t n = 0; n < seekers.size(); ++n) {
       if (!places[n]) continue;
@@ -53,6 +57,29 @@ std::vector<char> GrainDynamics::slots_in_sinks() const {
     if (!holds_translation(clumps_[n].motion))
       std::fill_n(marks.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)), clumps_.member_count(n),
                   in_sink(clumps_[n].centre));
+  return marks;
+}
+
+// A mark for each owned grain: 1 if it is part of the bed, as it is held or touches something; a member of a clump if
+// any member does. What has just come in touches nothing yet.
+std::vector<char> GrainDynamics::slots_in_bed() const {
+  std::vector<char> touches(store_.total());
+  for (const PairContact& c : list_.pairs)
+    if (box_.difference(store_.position[c.first], store_.position[c.second]).squaredNorm() < c.reach * c.reach)
+      touches[c.first] = touches[c.second] = 1;
+  const auto look = [&](const WallTouch& touch) {
+    if (touch.view.distance < store_.radius[touch.slot]) touches[touch.slot] = 1;
+  };
+  for_each_wall_touch(store_, list_, surroundings(), look);
+  for_each_solid_touch(store_, list_, surroundings(), 0.0, look);
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    const auto first = touches.begin() + static_cast<std::ptrdiff_t>(clumps_.first_slot(n)),
+               last = first + static_cast<std::ptrdiff_t>(clumps_.member_count(n));
+    if (std::find(first, last, 1) != last) std::fill(first, last, 1);
+  }
+  std::vector<char> marks(store_.owned);
+  for (std::size_t s = 0; s < store_.owned; ++s)
+    marks[s] = touches[s] != 0 || holds_translation(store_.motion[s]) ? 1 : 0;
   return marks;
 }
 

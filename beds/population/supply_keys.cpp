@@ -13,6 +13,12 @@ static void describe_entrance(SectionVisitor& visit, RegionKeys& region, std::op
   visit.integer("seed", seed, {.meaning = "seed of the random places", .at_least = 0});
 }
 
+static void describe(SectionVisitor& visit, AboveBedKeys& range) {
+  visit.real("lower", range.lower, {.unit = "m", .meaning = "lowest height", .at_least = 0.0});
+  visit.real("upper", range.upper, {.unit = "m", .meaning = "greatest height", .required = true, .example = 0.01});
+  visit.require(range.lower <= range.upper, "upper", "give a height in m that is not below lower");
+}
+
 void describe(SectionVisitor& visit, SupplyKeys& supply) {
   visit.integer("population", supply.population,
                 {.meaning = "number of the population, in grains, that they are like: sizes, shape, density, contact",
@@ -31,6 +37,11 @@ void describe(SectionVisitor& visit, SupplyKeys& supply) {
                 "the supply ends before it begins; give a time in s after from");
   describe_entrance(visit, supply.region, supply.velocity, supply.seed,
                     "with which they come in; default: that of the fluid there, else zero");
+  visit.section(
+      "above_bed", supply.above_bed,
+      {.meaning =
+           "only where the centre is so high, within the region, above the highest of the grains that lie or roll, "
+           "walls and solids below; default: in all of the region"});
 }
 
 static void describe(SectionVisitor& visit, RecirculationKeys& recirculation) {

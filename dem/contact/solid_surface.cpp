@@ -243,6 +243,15 @@ bool SolidSurface::holds(const Vec3& point) const {
   return winding > 0;
 }
 
+std::vector<std::array<Vec3, 3>> SolidSurface::triangles_along(const Vec3& begin, const Vec3& end) const {
+  std::vector<std::uint32_t> met;
+  for_each_triangle_in(begin.cwiseMin(end), begin.cwiseMax(end), [&](std::uint32_t n) { met.push_back(n); });
+  sort_and_drop_repeated(met);
+  std::vector<std::array<Vec3, 3>> corners;
+  for (const std::uint32_t n : met) corners.push_back(triangles_[n].corner);
+  return corners;
+}
+
 namespace {
 
 bool share_a_corner(const SurfaceView& a, const SurfaceView& b, double tolerance) {

@@ -60,6 +60,10 @@ public:
 
   bool holds(const Vec3& point) const;  // true if it is inside
 
+  // Corners of the triangles that a straight line between two points may cross, and of others; of a sphere there are
+  // none.
+  std::vector<std::array<Vec3, 3>> triangles_along(const Vec3& begin, const Vec3& end) const;
+
 private:
   SolidSurface() = default;
 

@@ -5,10 +5,8 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/geometry/periodic_box.hpp"
-#include "dem/contact/solid.hpp"
+#include "dem/contact/neighbour_list.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/walls.hpp"
 #include "dem/supply/supply.hpp"
 #include "dem/supply/travelling_body.hpp"
 
@@ -20,14 +18,6 @@
 #include <vector>
 
 namespace thalweg::dem {
-
-// Surroundings of the places, where they are now.
-struct PlaceSurroundings {
-  PeriodicBox box;
-  std::span<const Plane> walls;
-  std::span<const PlacedSolid> placed_solids;
-  std::span<const Solid> solids;
-};
 
 // A body that seeks a place.
 struct PlaceSeeker {
@@ -46,10 +36,17 @@ struct FreePlace {
   bool at_own_height;  // that of the seeker
 };
 
-// For each seeker a place for its centre; none: it must wait. store: the grains of this rank, without those that
-// leave (leaving[slot] != 0). draw: makes the random points of this step others than those of other steps. Collective.
-std::vector<std::optional<FreePlace>> free_places(std::span<const PlaceSeeker> seekers, const GrainStore& store,
-                                                  std::span<const char> leaving, const PlaceSurroundings& surroundings,
-                                                  std::uint64_t draw, MPI_Comm communicator);
+// The grains that a rank owns, and marks of their slots: 1 for those that leave, and that are part of the bed. The
+// latter matter only where some entrance is above the bed.
+struct GrainsAround {
+  const GrainStore& store;
+  std::span<const char> leaving, in_bed;
+};
+
+// For each seeker a place for its centre; none: it must wait. draw: makes the random points of this step others than
+// those of other steps. Collective.
+std::vector<std::optional<FreePlace>> free_places(std::span<const PlaceSeeker> seekers, const GrainsAround& grains,
+                                                  const Surroundings& surroundings, std::uint64_t draw,
+                                                  MPI_Comm communicator);
 
 }  // namespace thalweg::dem

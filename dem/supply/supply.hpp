@@ -28,6 +28,11 @@ struct Zone {
   }
 };
 
+// Heights above the bed (bed_level.hpp), m.
+struct HeightRange {
+  double lower = 0.0, upper = 0.0;
+};
+
 // Place where grains and clumps come in: each at a random point of the zone where it touches nothing.
 struct Entrance {
   Zone zone;  // of their centres
@@ -35,6 +40,7 @@ struct Entrance {
   // the fluid there, or at rest
   std::optional<Vec3> velocity;
   std::int64_t seed = 1;
+  std::optional<HeightRange> above_bed = std::nullopt;  // of their centres, within the zone; none: all of the zone
 };
 
 struct Supply {

@@ -21,6 +21,17 @@ void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& wha
         fmt::format("The zone of {} does not lie in the box with its lower corner below the upper one.", what));
 }
 
+void check_height(const Entrance& entrance, const PeriodicBox& box, const std::string& what) {
+  if (!entrance.above_bed) return;
+  const auto [lower, upper] = *entrance.above_bed;
+  if (!(lower >= 0.0 && lower <= upper))
+    throw InputError(fmt::format(
+        "The heights of {} above the bed are {:g} and {:g} m; neither may be negative, nor the lower above the upper.",
+        what, lower, upper));
+  if (box.periodic[2])
+    throw InputError(fmt::format("There is no bed for {} to be above: the box is periodic upwards.", what));
+}
+
 // The height (m) at which a body left the box, if its entrance has that height, too.
 std::optional<double> height_within(const Zone& zone, const TravellingBody& body) {
   const double height = body.centre().z();
@@ -36,6 +47,7 @@ void check(std::span<const Supply> supplies, std::span<const Sink> sinks, const 
     if (!(supplies[s].rate > 0.0))
       throw InputError(fmt::format("The rate of {} is {:g}; it must be positive.", what, supplies[s].rate));
     check_zone(supplies[s].entrance.zone, box, what);
+    check_height(supplies[s].entrance, box, what);
   }
   for (std::size_t s = 0; s < sinks.size(); ++s) {
     check_zone(sinks[s].zone, box, fmt::format("sink {}", s));

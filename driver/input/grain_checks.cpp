@@ -160,6 +160,16 @@ void check_populations(const Case& c, const io::YamlDocument& document) {
     });
 }
 
+// Throws where there is no bed for a supply to be above.
+void check_for_bed(const Case& c, const std::string& key, const io::YamlDocument& document) {
+  if (grain_box(c).periodic[2])
+    throw document.error(key,
+                         "a box that is periodic along z has no bed; give walls at bottom and top, or leave "
+                         "above_bed out");
+  if (!(c.system == SystemKind::model_fluid || gravity_vector(c.gravity).z() < 0.0))
+    throw document.error(key, "there is no bed without gravity downwards; give gravity, or leave above_bed out");
+}
+
 // Throws where every point of an entrance is nearer to a face than the grain is large.
 void check_entrance(const Case& c, const beds::RegionKeys& region, double radius, const std::string& key,
                     const io::YamlDocument& document) {
@@ -184,6 +194,7 @@ void check_supplies(const Case& c, const io::YamlDocument& document) {
     const beds::Population& population = c.grains[static_cast<std::size_t>(c.supplies[n].population)];
     const double radius = 0.5 * (population.shape ? population.smallest_diameter() : population.largest_diameter());
     check_entrance(c, c.supplies[n].region, radius, key + ".region", document);
+    if (c.supplies[n].above_bed) check_for_bed(c, key + ".above_bed", document);
     if (c.supplies[n].transport_rate && !(unit_mass_rate(c) > 0.0))
       throw document.error(
           key + ".transport_rate",

@@ -189,9 +189,12 @@ void add_turnover(const Case& c, Lines& lines) {
     const double unit = unit_mass_rate(c);
     lines.push_back(fmt::format(
         "supply {:<3} {:.4g} grains/s like those of grains.{}, {:.3g} kg/s{}: {:.4g} from {:g} "
-        "to {:g} s",
+        "to {:g} s{}",
         n, rate, supply.population, rate * mass, unit > 0.0 ? fmt::format(", q* {:.3g}", rate * mass / unit) : "",
-        std::floor(rate * std::max(0.0, until - supply.from)), supply.from, until));
+        std::floor(rate * std::max(0.0, until - supply.from)), supply.from, until,
+        supply.above_bed
+            ? fmt::format(", {:g} to {:g} m above the bed", supply.above_bed->lower, supply.above_bed->upper)
+            : ""));
   }
   if (c.sinks.empty() || c.grains.empty() || periodic_axes(c.domain)[2]) return;
   const double surface = settled_height(c);

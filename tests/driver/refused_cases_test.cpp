@@ -136,6 +136,28 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"a_supply_in_the_wall",
             {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.002]}}]"},
             {"supplies.0.region", "no grain of 0.00495 m can come in there", "across z", "between 0.002475 and"}},
+        Bad{"a_supply_in_the_bed",
+            {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.07]}, above_bed: "
+             "{upper: 0.002}}]"},
+            {"supplies.0.above_bed.upper", "a grain of 0.00495 m touches the bed", "its radius, 0.002475 m"}},
+        Bad{"a_supply_above_its_region",
+            {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.02]}, above_bed: "
+             "{lower: 0.021, upper: 0.03}}]"},
+            {"supplies.0.above_bed.lower", "that is above the region, which ends at 0.02 m"}},
+        Bad{"a_supply_upside_down",
+            {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.07]}, above_bed: "
+             "{lower: 0.01, upper: 0.005}}]"},
+            {"supplies.0.above_bed.upper", "not below lower"}},
+        Bad{"a_supply_above_no_floor",
+            {"domain.boundaries.bottom=periodic", "domain.boundaries.top=periodic",
+             "supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.07]}, above_bed: "
+             "{upper: 0.005}}]"},
+            {"supplies.0.above_bed", "periodic along z has no bed"}},
+        Bad{"a_supply_above_a_bed_without_gravity",
+            {"gravity=null", "gravity={vector: [0.1, 0, 0]}",
+             "supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.07]}, above_bed: "
+             "{upper: 0.005}}]"},
+            {"supplies.0.above_bed", "no bed without gravity downwards"}},
         Bad{"a_return_in_the_wall",
             {"sinks=[{region: {lower: [0, 0, 0], upper: [0.01, 0.01, 0.07]}, recirculation: {region: {lower: [0, 0, "
              "0.074], upper: [0.06, 0.01, 0.075]}}}]"},

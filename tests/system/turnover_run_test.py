@@ -96,6 +96,44 @@ class TurnoverRun(ProgramTest):
                       sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0], ranks=2)
         self.assertEqual(self.checkpoints("again")[-1], reference[-1])
 
+    def test_a_feed_onto_the_bed(self):
+        # Spheres and clumps within 6 mm of the bed, whose level rises meanwhile; slowly, so that they land softly.
+        above = ["supplies.0.above_bed={lower: 0.0025, upper: 0.0055}", "supplies.1.above_bed={upper: 0.006}"]
+        settings = ["--set", "sinks=[]"]
+        for n in (0, 1):
+            settings += ["--set", f"supplies.{n}.region={{lower: [0.01, 0.01, 0], upper: [0.05, 0.02, 0.075]}}",
+                         "--set", f"supplies.{n}.velocity=[0, 0, -0.2]", "--set", above[n]]
+        self.run_well("run", self.case, "--out", self.folder / "one", *settings)
+        known = self.balance("one", 45)
+        self.assertGreaterEqual(known["supplied_grains"][-1], 59)
+        self.assertLess(known["supply_lag"].max(), 0.02)
+        # Nothing that is fed falls by more than 6 mm and a diameter, to (0.2^2 + 2 g h)^(1/2) = 0.51 m/s.
+        self.assertLess(known["largest_grain_speed"][-5:].max(), 0.55)
+        self.run_well("run", self.case, "--out", self.folder / "three", *settings, ranks=3)
+        self.assertEqual(self.checkpoints("three"), self.checkpoints("one"))
+        self.run_well("run", self.case, "--out", self.folder / "again", *settings, "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0], ranks=2)
+        self.assertEqual(self.checkpoints("again")[-1], self.checkpoints("one")[-1])
+        self.assert_refused("run", self.case, "--out", self.folder / "other", *settings, "--set",
+                            "supplies.0.above_bed.upper=0.006", "--restart", self.folder / "one",
+                            words=["supplies.0.above_bed.upper = 0.006: the run to be continued has 0.0055"])
+
+    def test_a_stream_is_fed_onto_its_bed(self):
+        # A bare floor, and water that carries off what is fed.
+        case = self.folder / "stream.yaml"
+        case.write_text(STREAM)
+        settings = ["--set", "supplies.0.region.lower=[0.008, 0.003, 0]",
+                    "--set", "supplies.0.above_bed={lower: 0.0026, upper: 0.004}",
+                    "--set", "supplies.0.region.upper=[0.016, 0.012, 0.018]", "--set", "supplies.0.rate=40",
+                    "--set", "run.until=0.6", "--set", "output.checkpoint.every=0.3"]
+        self.run_well("run", case, "--out", self.folder / "one", *settings)
+        self.assertGreaterEqual(self.balance("one", 2)["supplied_grains"][-1], 20)
+        self.run_well("run", case, "--out", self.folder / "two", *settings, ranks=2)
+        self.assertEqual(self.checkpoints("two"), self.checkpoints("one"))
+        self.run_well("run", case, "--out", self.folder / "again", *settings, "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
+        self.assertEqual(self.checkpoints("again")[-1], self.checkpoints("one")[-1])
+
     def test_a_stream_carries_grains_from_supply_to_sink(self):
         case = self.folder / "stream.yaml"
         case.write_text(STREAM)

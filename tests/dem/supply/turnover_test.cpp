@@ -1,8 +1,6 @@
 // Supplies and sinks: when grains come and go, that nothing is lost, and the same bits on any number of ranks.
-#include "core/parallel/ranks.hpp"
-#include "tests/dem/clump_cases.hpp"
+#include "tests/dem/supply/supply_cases.hpp"
 #include "tests/support/damaged_archive.hpp"
-#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,98 +10,25 @@
 namespace thalweg::dem::turnover_test {
 namespace {
 
-constexpr double small = 1.5e-3, large = 2.5e-3;  // m, radii
-
-Decomposition box_on(int ranks) {
-  const Index3 cells{16, 8, 16};
-  return Decomposition(cells, 2.5e-3, {true, true, false}, Decomposition::best_layout(cells, ranks));
-}
-
-// Spheres that are small and large in turn, which come down in the middle.
-Supply spheres(double rate) {
-  Supply supply;
-  supply.entrance = {{Vec3(0.012, 0.004, 0.025), Vec3(0.028, 0.016, 0.036)}, Vec3(0.3, 0.1, -0.5), 3};
-  supply.rate = rate;
-  supply.make = [](std::int64_t n) {
-    return GrainSeeds{{test::glass_sphere(0, Vec3::Zero(), Vec3::Zero(), n % 2 == 0 ? small : large)}, {}};
-  };
-  return supply;
-}
-
-Supply clumps(double mass_rate) {
-  Supply supply = spheres(mass_rate);
-  supply.entrance.seed = 4;
-  supply.by_mass = true;
-  const std::shared_ptr<const ClumpShape> shape = test::pebble();
-  supply.members = static_cast<int>(shape->members.size());
-  supply.make = [shape](std::int64_t n) {
-    ClumpSeed clump = test::glass_clump(0, shape, Vec3::Zero());
-    clump.orientation = test::some_orientation(static_cast<int>(n));
-    return GrainSeeds{{}, {clump}};
-  };
-  return supply;
-}
-
-constexpr double clump_mass_rate = 0.02;  // kg/s
-
-GrainParameters parameters() {
-  GrainParameters p = test::parameters(test::glass(0.5), 2.5e-5, 10);
-  p.contact.normal_stiffness = 500.0;  // so that a step of 25 us is short enough
-  p.contact.tangential_stiffness = 2.0 / 7.0 * 500.0;
-  p.walls = face_planes(box_on(1).box(), p.contact);
-  p.body_force = [](double mass, double) { return Vec3(mass * Vec3(2.0, 0.0, -15.0)); };
-  p.ghost_width = 3e-3;
-  p.attached_width = 1;
-  return p;
-}
-
-// A box with two supplies, a sink on the left of its floor, and one on the right whose grains come back.
-GrainParameters busy_box() {
-  GrainParameters p = parameters();
-  p.supplies = {spheres(900.0), clumps(clump_mass_rate)};
-  Sink gone, back;
-  gone.zone = {Vec3::Zero(), Vec3(0.012, 0.02, 0.006)};
-  back.zone = {Vec3(0.03, 0.0, 0.0), Vec3(0.04, 0.02, 0.006)};
-  back.recirculation = {{{Vec3(0.002, 0.0, 0.03), Vec3(0.038, 0.02, 0.038)}, std::nullopt, 5}, 0.05};
-  p.sinks = {gone, back};
-  return p;
-}
-
-// A large sphere, a small one and a clump, of the kinds that are supplied.
-GrainSeeds few_at_start() {
-  return {{test::glass_sphere(0, Vec3(0.02, 0.01, 0.004), Vec3::Zero(), large),
-           test::glass_sphere(1, Vec3(0.01, 0.01, 0.004), Vec3::Zero(), small)},
-          {test::glass_clump(2, test::pebble(), Vec3(0.03, 0.01, 0.01))}};
-}
-constexpr std::int64_t bodies_at_start = 3;
-constexpr GlobalId ids_at_start = 5, ids_a_round = 4;
-
-bool step(GrainDynamics& grains) {
-  const bool changed = grains.turn_over();
-  grains.prepare();
-  grains.advance(grains.parameters().sub_steps);
-  grains.refresh_ghosts();
-  return changed;
-}
-
-void run(GrainDynamics& grains, int steps) {
-  for (int n = 0; n < steps; ++n) step(grains);
-}
-
-double diagnostic(const GrainDynamics& grains, const std::string& name) {
-  return find_diagnostic(grains.turnover_diagnostics(), name).value();
-}
-
+using test::supply::all_ids;
+using test::supply::bodies_at_start;
+using test::supply::box_on;
+using test::supply::busy_box;
+using test::supply::clump_mass_rate;
+using test::supply::clumps;
+using test::supply::diagnostic;
+using test::supply::few_at_start;
+using test::supply::ids_a_round;
+using test::supply::ids_at_start;
+using test::supply::large;
+using test::supply::parameters;
+using test::supply::run;
+using test::supply::small;
+using test::supply::spheres;
+using test::supply::step;
 using thalweg::test::saved;
 
-std::vector<GlobalId> all_ids(const GrainDynamics& grains) {
-  const GrainStore& store = grains.store();
-  return Ranks(MPI_COMM_WORLD)
-      .gathered(std::vector<GlobalId>(store.id.begin(), store.id.begin() + static_cast<std::ptrdiff_t>(store.owned)));
-}
-
-TEST(Turnover, SameBitsOnAnyRanksAndAfterARestart) {
-  const GrainParameters p = busy_box();
+void expect_same_bits(const GrainParameters& p) {
   const int steps = 600;
   GrainDynamics alone(box_on(1), MPI_COMM_SELF, p, few_at_start());
   run(alone, steps / 2);
@@ -127,6 +52,17 @@ TEST(Turnover, SameBitsOnAnyRanksAndAfterARestart) {
   EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), half), "");
   run(restarted, steps / 2);
   EXPECT_EQ(thalweg::test::first_difference(saved(restarted, MPI_COMM_WORLD), reference), "");
+}
+
+TEST(Turnover, SameBitsOnAnyRanksAndAfterARestart) { expect_same_bits(busy_box()); }
+
+TEST(Turnover, SameBitsOfGrainsThatComeInAboveTheBed) {
+  GrainParameters p = busy_box();
+  for (Supply& supply : p.supplies) {
+    supply.entrance.zone.lower.z() = 0.0;
+    supply.entrance.above_bed = HeightRange{0.003, 0.009};
+  }
+  expect_same_bits(p);
 }
 
 TEST(Turnover, ACheckpointThatHasLostGrainsIsRefused) {
@@ -359,6 +295,9 @@ TEST(Turnover, ImpossibleSuppliesAreRefused) {
   refused(p);
   p = busy_box();
   p.sinks[0].zone.lower.z() = 0.01;
+  refused(p);
+  p = busy_box();
+  p.supplies[0].entrance.above_bed = HeightRange{0.004, 0.003};
   refused(p);
 }
 
