@@ -8,6 +8,7 @@
 //
 //   void describe(SectionVisitor& visit, Keys& keys);                             (core/keys/section_visitor.hpp)
 //   std::unique_ptr<Observer> make_observer(const Keys& keys, const RunContext& run, const RunningSystem& system);
+//   ObserverMemory memory_of(const Keys& keys, const RunContext& run, const RunSize& size);    (observer_memory.hpp)
 //
 // and, if some values are refused or questionable,
 //
@@ -18,6 +19,7 @@
 #pragma once
 
 #include "analysis/observer/observer.hpp"
+#include "analysis/observer/observer_memory.hpp"
 #include "analysis/observer/run_context.hpp"
 #include "core/keys/key_error.hpp"
 #include "core/keys/section_visitor.hpp"
@@ -35,12 +37,14 @@ enum class Needs { grains, fluid, both };
 // The form of the keys of an observer.
 template <typename Keys>
 concept IsObserverKeys = std::default_initializable<Keys> && std::equality_comparable<Keys> &&
-    requires(Keys& keys, SectionVisitor& visit, const RunContext& run, const RunningSystem& system) {
+    requires(Keys& keys, SectionVisitor& visit, const RunContext& run, const RunningSystem& system,
+             const RunSize& size) {
   { Keys::section } -> std::convertible_to<std::string>;
   { Keys::meaning } -> std::convertible_to<std::string>;
   requires std::same_as<decltype(Keys::needs), const Needs>;
   describe(visit, keys);
   { make_observer(keys, run, system) } -> std::same_as<std::unique_ptr<Observer>>;
+  { memory_of(keys, run, size) } -> std::same_as<ObserverMemory>;
 };
 
 // The keys of means.

@@ -33,6 +33,12 @@ std::vector<double> means_of(const std::vector<double>& sums, const std::vector<
 
 }  // namespace
 
+// diameter: m, the reference one.
+static StaticPixels pixels_of(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys,
+                              double diameter) {
+  return {communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time};
+}
+
 BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
                        const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles)
     : communicator_(communicator),
@@ -41,7 +47,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
       flow_(flow),
       diameter_(diameter),
       layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
-      pixels_(communicator, box, keys.pixel.value_or(diameter / 25.0), keys.static_time),
+      pixels_(pixels_of(communicator, box, keys, diameter)),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0),
       surface_counts_(surface_sums_) {
   sums_.assign(diagnostics().size(), 0.0);
@@ -217,6 +223,12 @@ std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunCon
                                         const RunningSystem& system) {
   return std::make_unique<BedSurface>(system.communicator, run.box, keys, run.grains->reference_diameter, bed_flow(run),
                                       run.grains->disk_thickness, run.grains->obstacles);
+}
+
+ObserverMemory memory_of(const BedSurfaceKeys& keys, const RunContext& run, const RunSize& size) {
+  const StaticPixels pixels = pixels_of(MPI_COMM_SELF, run.box, keys, run.grains->reference_diameter);
+  return {.of_ids = size.ids * pixels.bytes_per_id(run.grains->largest_diameter),
+          .while_saved = size.ids * pixels.saved_bytes_per_id(run.grains->largest_diameter)};
 }
 
 }  // namespace thalweg::analysis

@@ -43,6 +43,7 @@ struct BedSurfaceKeys {
 void describe(SectionVisitor& visit, BedSurfaceKeys& keys);
 void check(const BedSurfaceKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const BedSurfaceKeys& keys, const RunContext& run, const RunningSystem& system);
+ObserverMemory memory_of(const BedSurfaceKeys& keys, const RunContext& run, const RunSize& size);
 
 // The flow over the bed; none for dry grains.
 struct BedFlow {

@@ -49,6 +49,7 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys);
 void check(const EntrainmentKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+ObserverMemory memory_of(const EntrainmentKeys& keys, const RunContext& run, const RunSize& size);
 
 // Settings of a run: the ids ascending, and values that follow from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
@@ -66,6 +67,10 @@ struct EntrainmentSettings : EntrainmentKeys {
 
 class Entrainment : public Observer {
 public:
+  // Bytes that it keeps of every id; of a watched grain for each sample, with so many contacts, besides.
+  static double bytes_per_id();
+  static double bytes_per_sample(double touches);
+
   Entrainment(MPI_Comm communicator, const PeriodicBox& box, EntrainmentSettings settings);
 
   std::string name() const override { return "entrainment"; }

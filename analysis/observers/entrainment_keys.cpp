@@ -6,9 +6,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 namespace thalweg::analysis {
+
+namespace {
+
+// Of a deque of libstdc++: as many as fit into 512 bytes.
+constexpr double samples_a_block = 512 / sizeof(GrainSample);
+
+}  // namespace
 
 void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
   visit.integer_list("grains", keys.grains,
@@ -60,6 +68,30 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunCo
   settings.weight = run.grains->submerged_weight;
   settings.buoyancy = run.grains->buoyancy;
   return std::make_unique<Entrainment>(system.communicator, run.box, std::move(settings));
+}
+
+double Entrainment::bytes_per_id() {
+  // A ring that is empty has a table of eight pointers and room for some samples (libstdc++).
+  constexpr double table = 8 * sizeof(void*), room = samples_a_block * sizeof(GrainSample);
+  return sizeof(Memory) + table + room + 2.0 * bytes_of_allocation + sizeof(GlobalId) + sizeof(char);  // WatchedHere
+}
+
+double Entrainment::bytes_per_sample(double touches) {
+  return sizeof(GrainSample) + (bytes_of_allocation + sizeof(void*)) / samples_a_block + touches * sizeof(Touch) +
+         (touches > 0.0 ? bytes_of_allocation : 0.0);
+}
+
+// Of a bed the grains of its upper diameter, at a solid fraction of 0.6, are watched; they have four contacts.
+ObserverMemory memory_of(const EntrainmentKeys& keys, const RunContext& run, const RunSize& size) {
+  const double d = run.grains->reference_diameter, width = run.grains->disk_thickness;
+  const double plan = run.box.size.x() * (width > 0.0 ? width : run.box.size.y());
+  const double grain = width > 0.0 ? std::numbers::pi / 4.0 * d * d * width : std::numbers::pi / 6.0 * d * d * d;
+  const double watched =
+      keys.grains.empty() ? std::min(size.ids, 0.6 * plan * d / grain) : static_cast<double>(keys.grains.size());
+  const double samples = keys.memory / std::max(keys.every, size.step) + 1.0;
+  constexpr double touches = 4.0;
+  return {.of_ids =
+              size.ids * Entrainment::bytes_per_id() + watched * samples * Entrainment::bytes_per_sample(touches)};
 }
 
 }  // namespace thalweg::analysis

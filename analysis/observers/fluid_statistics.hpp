@@ -34,6 +34,8 @@ struct FluidStatisticsKeys {
 void describe(SectionVisitor& visit, FluidStatisticsKeys& keys);
 std::unique_ptr<Observer> make_observer(const FluidStatisticsKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+// It keeps sums by layer, nothing of a grain.
+inline ObserverMemory memory_of(const FluidStatisticsKeys&, const RunContext&, const RunSize&) { return {}; }
 
 class FluidStatistics : public MeanObserver {
 public:

@@ -47,6 +47,8 @@ struct GrainProfilesKeys {
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys);
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+// It keeps sums by layer, nothing of a grain.
+inline ObserverMemory memory_of(const GrainProfilesKeys&, const RunContext&, const RunSize&) { return {}; }
 
 struct WeightedBody;
 

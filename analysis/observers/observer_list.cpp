@@ -16,6 +16,12 @@ std::string begins_too_late(const char* section, double from, double until) {
       section, from, until, 0.5 * until);
 }
 
+// True if the run has what the observer of these keys looks at.
+template <typename Keys>
+bool is_possible(const RunContext& run) {
+  return (Keys::needs == Needs::fluid || run.grains) && (Keys::needs == Needs::grains || run.fluid);
+}
+
 }  // namespace
 
 void check(const RequestedObservers& requested, const RunContext& run) {
@@ -46,13 +52,19 @@ std::vector<std::string> warnings(const RequestedObservers& requested, const Run
   return found;
 }
 
+ObserverMemory memory_of(const RequestedObservers& requested, const RunContext& run, const RunSize& size) {
+  ObserverMemory memory;
+  requested.for_each([&](const auto& keys) {
+    if (keys && is_possible<std::decay_t<decltype(*keys)>>(run)) memory += memory_of(*keys, run, size);
+  });
+  return memory;
+}
+
 std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunContext& run,
                                                       const RunningSystem& system) {
   std::vector<std::unique_ptr<Observer>> observers;
   requested.for_each([&](const auto& keys) {
-    using Keys = std::decay_t<decltype(*keys)>;
-    const bool possible = (Keys::needs == Needs::fluid || run.grains) && (Keys::needs == Needs::grains || run.fluid);
-    if (keys && possible) observers.push_back(make_observer(*keys, run, system));
+    if (keys && is_possible<std::decay_t<decltype(*keys)>>(run)) observers.push_back(make_observer(*keys, run, system));
   });
   if (run.grains) observers.push_back(std::make_unique<GrainEnergy>(system.communicator));
   return observers;

@@ -57,6 +57,9 @@ void check(const RequestedObservers& requested, const RunContext& run);
 // The warnings of all requested observers, whole sentences; also of what begins (key from) after the end of the run.
 std::vector<std::string> warnings(const RequestedObservers& requested, const RunContext& run);
 
+// What the requested ones keep, as far as the run has what they look at.
+ObserverMemory memory_of(const RequestedObservers& requested, const RunContext& run, const RunSize& size);
+
 // The requested ones, as far as the run has what they look at, and those that every run has.
 std::vector<std::unique_ptr<Observer>> make_observers(const RequestedObservers& requested, const RunContext& run,
                                                       const RunningSystem& system);

@@ -26,6 +26,8 @@ struct PopulationLoadsKeys {
 void describe(SectionVisitor& visit, PopulationLoadsKeys& keys);
 std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+// It keeps sums by population, nothing of a grain.
+inline ObserverMemory memory_of(const PopulationLoadsKeys&, const RunContext&, const RunSize&) { return {}; }
 
 class PopulationLoads : public Observer {
 public:

@@ -134,4 +134,12 @@ std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunContext
   return std::make_unique<Probes>(system.communicator, system.decomposition, points, keys.every);
 }
 
+ObserverMemory memory_of(const ProbesKeys& keys, const RunContext&, const RunSize& size) {
+  auto points = static_cast<double>(keys.points.size());
+  for (const ProbeLine& line : keys.lines) points += static_cast<double>(line.points);
+  constexpr double numbers = 4.0;  // velocity and pressure
+  return {.on_first_rank = points * (sizeof(Index3) +
+                                     grown_list * kept_measurements(keys.every, size.step) * numbers * sizeof(double))};
+}
+
 }  // namespace thalweg::analysis

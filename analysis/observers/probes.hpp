@@ -30,6 +30,7 @@ struct ProbesKeys {
 void describe(SectionVisitor& visit, ProbesKeys& keys);
 void check(const ProbesKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const ProbesKeys& keys, const RunContext& run, const RunningSystem& system);
+ObserverMemory memory_of(const ProbesKeys& keys, const RunContext& run, const RunSize& size);
 
 class Probes : public Observer {
 public:

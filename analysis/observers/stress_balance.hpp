@@ -57,6 +57,8 @@ void describe(SectionVisitor& visit, StressBalanceKeys& keys);
 void check(const StressBalanceKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+// It keeps sums by layer, nothing of a grain.
+inline ObserverMemory memory_of(const StressBalanceKeys&, const RunContext&, const RunSize&) { return {}; }
 
 struct BalanceScales {
   double fluid_density = 0.0;           // kg/m^3

@@ -143,13 +143,16 @@ void describe(SectionVisitor& visit, TracksKeys& keys) {
   describe_every(visit, keys.every);
 }
 
+// Number of grains that are recorded, of so many.
+static std::int64_t recorded_grains(const TracksKeys& keys, std::int64_t all) {
+  return keys.grains.empty() ? (all + keys.one_in - 1) / keys.one_in : static_cast<std::int64_t>(keys.grains.size());
+}
+
 void check(const TracksKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
   if (!keys.grains.empty() && keys.one_in != 1)
     throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
-  const std::int64_t all = run.grains->count();
-  const std::int64_t recorded =
-      keys.grains.empty() ? (all + keys.one_in - 1) / keys.one_in : static_cast<std::int64_t>(keys.grains.size());
+  const std::int64_t all = run.grains->count(), recorded = recorded_grains(keys, all);
   if (recorded > TracksKeys::most_grains)
     throw KeyError("", fmt::format("it would record {} grains, and one rank can gather {}; name fewer in grains, give "
                                    "one_in: {}, or take all grains from output.grains",
@@ -163,6 +166,14 @@ std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext
   if (ids.empty())
     for (GlobalId id = 0; id < run.grains->count(); id += keys.one_in) ids.push_back(id);
   return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every, run.grains->any_clumps());
+}
+
+// Every rank knows the ids; the first has the records.
+ObserverMemory memory_of(const TracksKeys& keys, const RunContext& run, const RunSize& size) {
+  const double numbers = std::tuple_size_v<decltype(GrainRecord::values)> + (run.grains->any_clumps() ? 4.0 : 0.0);
+  const auto grains = static_cast<double>(recorded_grains(keys, run.grains->count()));
+  return {.on_first_rank = grains * (sizeof(GlobalId) + sizeof(GrainRecord) +
+                                     grown_list * kept_measurements(keys.every, size.step) * numbers * sizeof(double))};
 }
 
 }  // namespace thalweg::analysis

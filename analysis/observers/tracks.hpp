@@ -30,6 +30,7 @@ struct TracksKeys {
 void describe(SectionVisitor& visit, TracksKeys& keys);
 void check(const TracksKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext& run, const RunningSystem& system);
+ObserverMemory memory_of(const TracksKeys& keys, const RunContext& run, const RunSize& size);
 
 class Tracks : public Observer {
 public:

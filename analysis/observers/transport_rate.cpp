@@ -218,4 +218,8 @@ std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const Run
   return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);
 }
 
+ObserverMemory memory_of(const TransportRateKeys&, const RunContext&, const RunSize& size) {
+  return {.of_ids = size.ids * Hops::bytes_per_id()};
+}
+
 }  // namespace thalweg::analysis

@@ -43,6 +43,8 @@ public:
         moving_speed_(moving_speed),
         recirculation_(recirculation) {}
 
+  static constexpr double bytes_per_id() { return sizeof(Memory); }  // of what it keeps
+
   struct Entry {
     Passage passage;
     std::int64_t place;  // number of the section or the bin

@@ -28,6 +28,16 @@ double time_of_record(const ReachKeys& keys) {
   return (std::ceil(keys.record_every / keys.every * (1.0 - 1e-9)) - 0.5) * keys.every;
 }
 
+Sections sections_of(const PeriodicBox& box, const ReachKeys& keys, double diameter) {
+  return {box.size.x(), keys.sections.value_or(default_sections(box.size.x(), diameter)), box.periodic[0]};
+}
+
+StaticPixels pixels_of(MPI_Comm communicator, const PeriodicBox& box, const ReachKeys& keys, double diameter) {
+  return {communicator, box,
+          pixel_of(sections_of(box, keys, diameter), keys.pixel.value_or(diameter / pixels_across_diameter)),
+          time_of_record(keys)};
+}
+
 std::vector<std::int64_t> summed(MPI_Comm communicator, std::vector<std::int64_t> counts) {
   MPI_Allreduce(MPI_IN_PLACE, counts.data(), mpi_count(counts.size()), MPI_INT64_T, MPI_SUM, communicator);
   return counts;
@@ -63,16 +73,13 @@ Reach::Reach(MPI_Comm communicator, const PeriodicBox& box, const TransportScale
              double disk_thickness, bool recirculation)
     : communicator_(communicator),
       scales_(scales),
-      sections_{box.size.x(), keys.sections.value_or(default_sections(box.size.x(), scales.grain_diameter)),
-                box.periodic[0]},
+      sections_(sections_of(box, keys, scales.grain_diameter)),
       width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
       from_(keys.from),
       every_(keys.every),
       record_every_(keys.record_every),
       moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
-      pixels_(communicator, box,
-              pixel_of(sections_, keys.pixel.value_or(scales.grain_diameter / pixels_across_diameter)),
-              time_of_record(keys)),
+      pixels_(pixels_of(communicator, box, keys, scales.grain_diameter)),
       book_(communicator, sections_, scales.grain_diameter, moving_speed_, recirculation),
       residence_(communicator, sections_.length / scales.fall_speed()),
       interval_(sections_.size()),
@@ -195,6 +202,13 @@ std::int64_t Reach::balance_residual() const {
     residual += std::abs(here_[bin] - first_grains_[bin] - gained);
   }
   return residual;
+}
+
+ObserverMemory memory_of(const ReachKeys& keys, const RunContext& run, const RunSize& size) {
+  const StaticPixels pixels = pixels_of(MPI_COMM_SELF, run.box, keys, run.grains->reference_diameter);
+  const double largest = run.grains->largest_diameter;
+  return {.of_ids = size.ids * (GrainBook::bytes_per_id() + pixels.bytes_per_id(largest)),
+          .while_saved = size.ids * pixels.saved_bytes_per_id(largest)};
 }
 
 }  // namespace thalweg::analysis

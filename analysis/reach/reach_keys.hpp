@@ -27,6 +27,7 @@ struct ReachKeys {
 void describe(SectionVisitor& visit, ReachKeys& keys);
 void check(const ReachKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const ReachKeys& keys, const RunContext& run, const RunningSystem& system);
+ObserverMemory memory_of(const ReachKeys& keys, const RunContext& run, const RunSize& size);
 
 // Number of sections where none is given: one a diameter (m), at least two.
 std::int64_t default_sections(double length, double diameter);

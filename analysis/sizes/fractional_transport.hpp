@@ -51,6 +51,8 @@ void check(const FractionalTransportKeys& keys, const RunContext& run);
 std::optional<std::string> warning(const FractionalTransportKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const FractionalTransportKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
+// It keeps sums by class, nothing of a grain.
+inline ObserverMemory memory_of(const FractionalTransportKeys&, const RunContext&, const RunSize&) { return {}; }
 
 class FractionalTransport : public MeanObserver {
 public:

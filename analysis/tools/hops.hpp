@@ -40,6 +40,8 @@ public:
   // moving_speed: the threshold, m/s.
   Hops(MPI_Comm communicator, double length, double time, double moving_speed);
 
+  static constexpr double bytes_per_id() { return sizeof(Memory); }  // of what it keeps
+
   // id_count: of all ids, also those of members of clumps. counts: hops that begin now count. Collective.
   void observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies, bool counts);
 

@@ -51,7 +51,7 @@ void StaticPixels::make_room_for(const GrainView& grains) {
   double largest = 0.0;
   for (const double radius : grains.radius) largest = std::max(largest, radius);
   largest = max_over_ranks(communicator_, largest);
-  const auto columns = static_cast<std::int64_t>(std::ceil(2.0 * largest / width_)) + 1;
+  const std::int64_t columns = columns_covered(largest);
   if (columns <= columns_a_grain_) return;
   std::vector<Rows> wider(first_.size() * static_cast<std::size_t>(columns));
   for (std::size_t grain = 0; grain < first_.size(); ++grain)
@@ -68,6 +68,11 @@ void StaticPixels::forget_others(const std::vector<Disk>& disks) {
   const auto columns = static_cast<std::ptrdiff_t>(columns_a_grain_);
   for (std::size_t grain = 0; grain < here.size(); ++grain)
     if (here[grain] == 0) std::fill_n(rows_.begin() + static_cast<std::ptrdiff_t>(grain) * columns, columns, Rows{});
+}
+
+// The number of columns that such a disk (m) may cover.
+std::int64_t StaticPixels::columns_covered(double radius) const {
+  return static_cast<std::int64_t>(std::ceil(2.0 * radius / width_)) + 1;
 }
 
 // The first column whose centre a disk may cover.
@@ -133,6 +138,7 @@ void StaticPixels::save(ArchiveWriter& archive, const std::string& group) const 
   if (!homes_) return;
   const auto columns = static_cast<std::size_t>(columns_a_grain_);
   std::vector<std::int64_t> values;
+  values.reserve(first_.size() * (1 + 2 * columns));
   for (std::size_t grain = 0; grain < first_.size(); ++grain) {
     values.push_back(first_[grain]);
     for (std::size_t c = 0; c < columns; ++c) {

@@ -27,6 +27,16 @@ public:
   // static_time: s, of a picture.
   StaticPixels(MPI_Comm communicator, const PeriodicBox& box, double pixel, double static_time);
 
+  // Bytes that it keeps of an id, where the largest grain is so wide (m).
+  double bytes_per_id(double largest_diameter) const {
+    return sizeof(std::int64_t) + static_cast<double>(columns_covered(0.5 * largest_diameter)) * sizeof(Rows);
+  }
+
+  // The same of the row that save() writes.
+  double saved_bytes_per_id(double largest_diameter) const {
+    return static_cast<double>(1 + 2 * columns_covered(0.5 * largest_diameter)) * sizeof(std::int64_t);
+  }
+
   // Takes a look. True if it completes a picture. Collective.
   bool look(const Snapshot& snapshot);
 
@@ -51,6 +61,7 @@ private:
     double x, z, radius;
   };
   Rows covered(const Disk& disk, double x, std::int64_t column) const;
+  std::int64_t columns_covered(double radius) const;
   std::int64_t first_column(double x, double radius) const;
   double near(double x, std::int64_t column) const;
   void make_room_for(const GrainView& grains);

@@ -108,9 +108,11 @@ struct GrainsOfCase {
       : count(static_cast<double>(most_rows(c))),
         reach(c.grains.empty() ? 0.0 : reach_of_ghosts(c)),
         height(c.grains.empty() ? 0.0 : settled_height(c)),
-        links(bytes_of_links(c)) {}
+        links(bytes_of_links(c)),
+        observers(memory_of_observers(c)) {}
 
   double count, reach, height, links;  // of rows, m, m, bytes
+  analysis::ObserverMemory observers;
 };
 
 // Extent of the grains along an axis, m.
@@ -157,6 +159,8 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
     const double lattice = (own[0] + 2.0) * (own[1] + 2.0) * (own[2] + 2.0) * bytes_of_cell(c);
     work.memory += lattice + bytes_of_writing(c, decomposition, rank, lattice);
   }
+  work.memory += (grains.observers.of_ids + grains.observers.while_saved) / decomposition.ranks() +
+                 (rank == 0 ? grains.observers.on_first_rank : 0.0);
   if (c.grains.empty()) return work;
   const double count = grains.count;
   const auto sub_steps = static_cast<double>(grain_steps(c));

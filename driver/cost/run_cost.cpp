@@ -1,7 +1,10 @@
 #include "driver/cost/run_cost.hpp"
 
 #include "driver/cost/machine.hpp"
+#include "driver/estimate/supplied_grains.hpp"
+#include "driver/input/run_context.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::driver {
@@ -69,6 +72,14 @@ double bytes_of_sizes(const Case& c) {
     bytes += static_cast<double>(population.diameters.size()) * sizeof(double) +
              static_cast<double>(population.figures.sizes.size()) * sizeof(beds::SizeCount);
   return bytes;
+}
+analysis::ObserverMemory memory_of_observers(const Case& c) {
+  analysis::ObserverMemory memory = memory_of(c.analysis.observers, run_context(c), {ids_of_run(c), step_time(c)});
+  // Where ids are added, what is kept of them grows now and then, to twice the size.
+  if (!c.supplies.empty()) memory.of_ids *= analysis::grown_list;
+  // Not at the same time as a frame is written.
+  memory.while_saved = std::max(0.0, memory.while_saved - frame_row_bytes * static_cast<double>(most_rows(c)));
+  return memory;
 }
 double bytes_of_links(const Case& c) { return link_count(c) * link_bytes; }
 

@@ -1,6 +1,7 @@
 // Estimated cost of a run: work, memory, time on one core.
 #pragma once
 
+#include "analysis/observer/observer_memory.hpp"
 #include "driver/case/case.hpp"
 
 namespace thalweg::driver {
@@ -24,6 +25,10 @@ double bytes_of_placing(const Case& c, int ranks);   // for what a rank knows of
 double bytes_of_bed_rows(const Case& c, int ranks);  // a rank's share of the rows of bed files
 double bytes_of_sizes(const Case& c);                // the different sizes, which every rank has
 double bytes_of_links(const Case& c);                // the links of all grains
+
+// What observers keep from one measurement to the next; while_saved: beyond what is counted of a grain while a frame is
+// written.
+analysis::ObserverMemory memory_of_observers(const Case& c);
 
 // Number of links of a sphere so many cells wide.
 double links_of_sphere(double cells_across);

@@ -21,17 +21,37 @@ double grains_per_second(const Case& c, const beds::SupplyKeys& supply) {
   return mass_rate / beds::mean_mass(c.grains[static_cast<std::size_t>(supply.population)]);
 }
 
+namespace {
+
+// Ids that each of its grains takes: of a clump its members.
+double ids_each(const Case& c, const beds::SupplyKeys& supply) {
+  const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];
+  return population.shape ? static_cast<double>(population.shape->clump.size()) : 1.0;
+}
+
+// All grains of a supply.
+double grains_of(const Case& c, const beds::SupplyKeys& supply) {
+  const double until = std::min(c.run.until, supply.until.value_or(c.run.until));
+  return grains_per_second(c, supply) * std::max(0.0, until - supply.from);
+}
+
+}  // namespace
+
 std::int64_t most_rows(const Case& c) {
   const std::int64_t at_start = grain_rows(c);
   double supplied = 0.0;
-  for (const beds::SupplyKeys& supply : c.supplies) {
-    const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];
-    const double rows = population.shape ? static_cast<double>(population.shape->clump.size()) : 1.0;
-    const double until = std::min(c.run.until, supply.until.value_or(c.run.until));
-    supplied += rows * grains_per_second(c, supply) * std::max(0.0, until - supply.from);
-  }
+  for (const beds::SupplyKeys& supply : c.supplies) supplied += ids_each(c, supply) * grains_of(c, supply);
   if (!c.sinks.empty()) supplied = std::min(supplied, static_cast<double>(at_start));
   return at_start + static_cast<std::int64_t>(std::min(supplied, 1e15));
+}
+
+double ids_of_run(const Case& c) {
+  double rounds = 0.0, a_round = 0.0;  // each has ids for one grain of every supply (dem/supply/turnover.hpp)
+  for (const beds::SupplyKeys& supply : c.supplies) {
+    rounds = std::max(rounds, grains_of(c, supply));
+    a_round += ids_each(c, supply);
+  }
+  return static_cast<double>(grain_rows(c)) + rounds * a_round;
 }
 
 }  // namespace thalweg::driver

@@ -71,4 +71,8 @@ inline std::unique_ptr<Observer> make_observer(const CentreOfMassKeys& keys, con
   return std::make_unique<CentreOfMass>(system.communicator, keys);
 }
 
+inline ObserverMemory memory_of(const CentreOfMassKeys&, const RunContext&, const RunSize&) {
+  return {};  // it keeps nothing of a grain
+}
+
 }  // namespace thalweg::analysis

@@ -3,6 +3,8 @@
 
 #include "core/base/error.hpp"
 #include "driver/cost/run_cost.hpp"
+#include "driver/estimate/reference_grain.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
@@ -51,6 +53,41 @@ TEST(Memory, IsThatOfTheLatticeAboveAll) {
   EXPECT_NO_THROW(refuse_without_memory(c));
   c.domain.size = Vec3(12.0, 40.0, 106.0);
   EXPECT_THROW(refuse_without_memory(c), InputError);
+}
+
+// 72 bytes in the book of the reach and 27 columns of static pixels, of eight bytes, with their place, of each id.
+TEST(Memory, OfMeasurementsOfEveryGrain) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  const double before = memory_on_one_rank(c);
+  c.analysis.observers.of<analysis::ReachKeys>().emplace();
+  const double ids = ids_of_run(c), more = memory_on_one_rank(c) - before;
+  EXPECT_EQ(ids, static_cast<double>(grain_rows(c)));
+  EXPECT_GT(more, 200.0 * ids);
+  EXPECT_LT(more, 400.0 * ids);
+}
+
+// Grains that are supplied and leave again take no room of their own, but their ids do.
+TEST(Memory, OfMeasurementsGrowsWithWhatIsSupplied) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  c.analysis.observers.of<analysis::TransportRateKeys>().emplace();
+  c.run.until = 10.0;
+  const double rows = static_cast<double>(grain_rows(c));
+  beds::SupplyKeys supply;
+  supply.rate = 1e5;
+  supply.from = 2.0;
+  c.supplies = {supply};
+  c.sinks.resize(1);
+  EXPECT_NEAR(ids_of_run(c), rows + 8e5, 1.0);
+  const double more = memory_of_observers(c).of_ids;
+  EXPECT_NEAR(more, 1.5 * 40.0 * ids_of_run(c), 0.01 * more);
+  supply.rate = 1e4;
+  c.supplies.push_back(supply);  // ids of which most are not used
+  EXPECT_NEAR(ids_of_run(c), rows + 1.6e6, 1.0);
+  const double on_one = memory_on_one_rank(c);
+  c.supplies.clear();
+  EXPECT_GT(on_one, memory_on_one_rank(c) + 60.0 * 1.6e6);
 }
 
 }  // namespace
