@@ -116,10 +116,15 @@ def report(rows):
     return verdict.exit_code
 
 
+DRAWN = (("resolved", "o"), ("a tenth of the rate", "D"), ("finer, wider or faster", "s"), ("with lubrication", "^"))
+
+
 def kind_of(row):
-    """How a run is drawn: as one of the sweep, with the lubrication correction, or with another difference."""
+    """How a run is drawn: as one of the sweep, with the lubrication correction, slowly, or with another difference."""
     if row["lubrication"] == "on":
         return "with lubrication"
+    if float(row["shear_rate [1/s]"]) < 2.0:
+        return "a tenth of the rate"
     return "resolved" if row["run"].startswith("solid_fraction") else "finer, wider or faster"
 
 
@@ -129,7 +134,7 @@ def draw(rows, name):
     relative, error = of("total_stress [Pa]") / (of("fluid_viscosity [Pa s]") * of("shear_rate [1/s]")), of("error [1]")
     kinds = np.array([kind_of(row) for row in rows])
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
-    for kind, marker in (("resolved", "o"), ("finer, wider or faster", "s"), ("with lubrication", "^")):
+    for kind, marker in DRAWN:
         chosen = kinds == kind
         style = {"fmt": marker, "capsize": 3, "label": kind}
         axes[0].errorbar(mixed[chosen], mu[chosen], (mu * error)[chosen], **style)
