@@ -14,7 +14,7 @@ namespace thalweg::analysis {
 namespace {
 
 // Of a deque of libstdc++: as many as fit into 512 bytes.
-constexpr auto samples_a_block = static_cast<double>(512 / sizeof(GrainSample));
+constexpr std::size_t samples_a_block = 512 / sizeof(GrainSample);
 
 }  // namespace
 
