@@ -13,6 +13,7 @@
 #include "driver/cost/load_balance.hpp"
 #include "driver/cost/machine.hpp"
 #include "driver/cost/memory.hpp"
+#include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/execution/final_bed.hpp"
 #include "driver/execution/run_output.hpp"
@@ -252,7 +253,7 @@ private:
     const Case& c = case_;
     if (!restarts()) about_case(command_.path, [&] { check_initial_sources(c, Ranks(communicator_)); });
     about_case(command_.path, [&] { refuse_without_memory(c, communicator_, identity_.layout); });
-    if (has_fluid(c)) bandwidth_ = measure_bandwidth(communicator_);  // while there is room for its array
+    if (exceeds_caches(bytes_of_lattice(c))) bandwidth_ = measure_bandwidth(communicator_);  // while its array has room
     forget_largest_memory();
     const Start start = restarts() || c.initial.takes(InitialField::grains) ? Start::from_checkpoint : Start::as_placed;
     const fs::path state = restarts() ? paths_.checkpoints.front() : initial_grains(c, communicator_);
@@ -313,7 +314,7 @@ private:
   MPI_Comm communicator_;
   RunIdentity identity_;
   StartPoint start_point_;
-  double bandwidth_ = 0.0;  // of the memory, bytes/s; 0: there is no lattice
+  double bandwidth_ = 0.0;  // of the memory, bytes/s; 0: it does not bound the speed
   std::unique_ptr<System> system_;
   Observers observers_;
   std::optional<RunOutput> output_;

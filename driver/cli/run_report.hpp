@@ -27,8 +27,8 @@ struct StartPoint {
   RunHistory run_history;            // of that run
 };
 
-// Describes the run that is about to start. bandwidth: of the memory, bytes/s; 0: there is no lattice. Sets the memory
-// bound and the number of warnings in `identity`.
+// Describes the run that is about to start. bandwidth: of the memory, bytes/s; 0: it does not bound the speed. Sets the
+// memory bound and the number of warnings in `identity`.
 void print_header(const Case& c, RunIdentity& identity, const System& system, const io::RunFolder& folder,
                   const StartPoint& start_point, double bandwidth, MPI_Comm communicator, loop::Log& log);
 

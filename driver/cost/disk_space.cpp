@@ -104,11 +104,9 @@ double records(const Case& c) {
 }  // namespace
 
 double bytes_of_checkpoint(const Case& c) {
-  const Index3 n = cells_of(c.domain);
-  const double lattice = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c) : 0.0;
   // State and loads of a grain, and three contacts with their springs.
   constexpr double grain_bytes = 900.0;
-  return lattice + static_cast<double>(most_rows(c)) * grain_bytes;
+  return bytes_of_lattice(c) + static_cast<double>(most_rows(c)) * grain_bytes;
 }
 
 std::string bytes_text(double bytes) {

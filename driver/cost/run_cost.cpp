@@ -40,6 +40,11 @@ double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }
+double bytes_of_lattice(const Case& c) {
+  if (!has_fluid(c)) return 0.0;
+  const Index3 n = cells_of(c.domain);
+  return static_cast<double>(n[0]) * n[1] * n[2] * 19.0 * bytes_per_value(c);
+}
 double bytes_of_program() { return program_bytes; }
 double bytes_of_grain(const Case& c, int ranks) {
   if (ranks == 1) return grain_bytes;

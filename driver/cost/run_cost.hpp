@@ -20,6 +20,7 @@ Cost cost_of(const Case& c, double bandwidth);
 double bytes_per_value(const Case& c);               // a population of a cell
 double bytes_of_program();                           // a process before it has a system
 double bytes_of_cell(const Case& c);                 // a cell of fluid
+double bytes_of_lattice(const Case& c);              // the populations of all cells; 0 without a fluid
 double bytes_of_grain(const Case& c, int ranks);     // a grain on one rank or several
 double bytes_of_placing(const Case& c, int ranks);   // for what a rank knows of other grains while they are placed
 double bytes_of_bed_rows(const Case& c, int ranks);  // a rank's share of the rows of bed files

@@ -23,7 +23,7 @@ struct RunIdentity {
   Index3 layout;
   int ranks;
   std::optional<ReferenceGrain> reference = {};  // none without grains
-  double memory_bound_mlups = 0.0;               // rate that the measured memory bandwidth allows; 0 without a lattice
+  double memory_bound_mlups = 0.0;               // rate that the memory bandwidth allows; 0: caches hold the lattice
   std::optional<MemoryUse> memory = {};          // once it has ended in good order
   std::int64_t warnings = 0;                     // about the case, printed when the run begins
   Provenance provenance = {};                    // once the run folder is there
