@@ -2,6 +2,7 @@
 #include "driver/cost/memory.hpp"
 
 #include "core/base/error.hpp"
+#include "driver/cost/machine.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/supplied_grains.hpp"
@@ -53,6 +54,18 @@ TEST(Memory, IsThatOfTheLatticeAboveAll) {
   EXPECT_NO_THROW(refuse_without_memory(c));
   c.domain.size = Vec3(12.0, 40.0, 106.0);
   EXPECT_THROW(refuse_without_memory(c), InputError);
+}
+
+// Caches hold the lattice of a small box, and the speed of one in the flume's resolution is that of memory.
+TEST(Memory, BoundsTheSpeedOfLargeLattices) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.domain.size = Vec3(0.120, 0.040, 0.106);
+  EXPECT_EQ(bytes_of_lattice(c), 240.0 * 80.0 * 212.0 * 19.0 * 4.0);
+  EXPECT_TRUE(exceeds_caches(bytes_of_lattice(c)));
+  c.domain.size = Vec3(0.020, 0.010, 0.020);
+  EXPECT_FALSE(exceeds_caches(bytes_of_lattice(c)));
+  c.system = SystemKind::grains;
+  EXPECT_EQ(bytes_of_lattice(c), 0.0);
 }
 
 // 72 bytes in the book of the reach and 27 columns of static pixels, of eight bytes, with their place, of each id.
