@@ -41,7 +41,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
                          shell_word(folder.path().string()), 2.0 * delay));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
   if (bandwidth > 0.0) {
-    const double bytes = bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));
+    const double bytes = bytes_per_cell_update(bytes_per_value(c));
     identity.memory_bound_mlups = bandwidth / bytes * 1e-6;
     log.line(fmt::format("memory bandwidth {:.1f} GB/s; {:.0f} bytes per cell update: at most {:.0f} MLUPS",
                          bandwidth * 1e-9, bytes, identity.memory_bound_mlups));

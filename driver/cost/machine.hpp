@@ -16,6 +16,6 @@ double measure_bandwidth(MPI_Comm communicator);
 inline bool exceeds_caches(double bytes) { return bytes > 32.0 * 1024.0 * 1024.0; }
 
 // Bytes a cell update must move at least: 19 populations of `bytes_per_value` read and written once.
-inline double bytes_per_cell_update(int bytes_per_value) { return 2.0 * 19.0 * bytes_per_value; }
+inline double bytes_per_cell_update(double bytes_per_value) { return 2.0 * 19.0 * bytes_per_value; }
 
 }  // namespace thalweg::driver

@@ -95,7 +95,7 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
   cost.grain_steps = static_cast<double>(grain_rows(c) * grain_steps(c)) * cost.steps;
-  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(static_cast<int>(bytes_per_value(c)));
+  const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(bytes_per_value(c));
   cost.core_seconds =
       traffic / bandwidth + cost.steps * link_count(c) * link_seconds +
       cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);

@@ -3,8 +3,8 @@
 compare.py [RUN...] [--table FILE] [--figure FILE]
 
 RUN: folders of runs of case.yaml, which begin on the bed of another run; each becomes a row of the table (rows of other
-runs stay). Profiles are means over the frames of the grains from `analysis.grain_profiles.from` on. Prints each run with
-the reference of the nearest bulk Reynolds number, and pass or fail. Exit code 0 if all pass.
+runs stay). Profiles are means from `analysis.grain_profiles.from` on: those of the run or, where it gathered them
+over another time, of the frames of the grains. Prints each run with the reference of the nearest bulk Reynolds number, and pass or fail. Exit code 0 if all pass.
 """
 import sys
 from pathlib import Path
@@ -17,6 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import Run, mean_with_error
+from thalweg.bed import has_profiles_of
 from thalweg.checks import Verdict
 from thalweg.comparison import compared_rows
 from thalweg.layers import layer_profiles
@@ -24,7 +25,8 @@ from thalweg.tables import read_rows
 
 COLUMNS = [
     "run", "cells [1]", "friction [1]", "from [s]", "until [s]", "reynolds_number [1]", "clear_height [diameter]",
-    "shields_number [1]", "bed_fraction [1]", "volume_rate [1]", "error [1]", "solid_rate [1]", "mobile_layer [diameter]",
+    "shields_number [1]", "bed_fraction [1]", "volume_rate [1]", "error [1]", "independent [1]",
+    "solid_rate [1]", "mobile_layer [diameter]",
 ]
 SURFACE = 0.05             # solid fraction at the surface of the bed, as in the reference
 MOVING = 0.01              # of the velocity of the grains at the surface, above which they count as mobile
@@ -45,7 +47,8 @@ def measured(folder):
     d, nu = float(grains["diameter"]), float(fluid["kinematic_viscosity"])
     start, stop = float(case["analysis"]["grain_profiles"]["from"]), run.series["time"][-1]
     later = run.series["time"] >= start
-    layers = layer_profiles(run, start, stop, 0.25 * d)
+    gathered = has_profiles_of(run, start, stop)
+    layers = run.profiles["grain_profiles"] if gathered else layer_profiles(run, start, stop, 0.25 * d)
     z, fraction, velocity = layers["z"], layers["solid_fraction"], np.nan_to_num(layers["velocity"][:, 0])
     surface = height_of_surface(z, fraction)
     thickness = z[1] - z[0]
@@ -62,8 +65,8 @@ def measured(folder):
     core = (z > 0.3 * surface) & (z < 0.7 * surface)
     values = [
         start, stop, discharge / nu, clear / d, 6.0 * discharge / nu / galileo_squared * (d / clear)**2,
-        fraction[core].mean(), volume_rate, volume_rate * solid.error / solid.mean, solid.mean / discharge,
-        (surface - mobile.min()) / d,
+        fraction[core].mean(), volume_rate, volume_rate * solid.error / solid.mean,
+        solid.independent, solid.mean / discharge, (surface - mobile.min()) / d,
     ]
     names = [run.folder.name, f"{d / float(case['domain']['spacing']):.4g}", f"{float(case['contact']['friction']):g}"]
     return dict(zip(COLUMNS, names + [f"{float(value):.4g}" for value in values]))
