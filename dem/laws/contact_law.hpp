@@ -1,6 +1,6 @@
 // Building blocks of contact laws. A law is one class: spring_dashpot.hpp and hertz_mindlin.hpp stand alone,
-// rolling_friction.hpp and liquid_bridge.hpp add to another law, and contact_laws.hpp lists them all. The concept
-// IsContactLaw below checks that such a class has
+// kinetic_friction.hpp, rolling_friction.hpp and liquid_bridge.hpp add to another law, and contact_laws.hpp lists them
+// all. The concept IsContactLaw below checks that such a class has
 //
 //   Coefficients    doubles that two materials have together, among them `damping_ratio` and `damping` (material.hpp);
 //                   the last one is `friction`, which walls replace by theirs

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem/laws/hertz_mindlin.hpp"
+#include "dem/laws/kinetic_friction.hpp"
 #include "dem/laws/liquid_bridge.hpp"
 #include "dem/laws/rolling_friction.hpp"
 #include "dem/laws/spring_dashpot.hpp"
@@ -42,13 +43,16 @@ decltype(auto) with_law(const LawChoice& choice, double time_step, Visitor&& vis
   const auto and_rolling = [&](const auto& law) -> decltype(auto) {
     return choice.rolling_friction ? and_bridge(WithRollingFriction(law, common)) : and_bridge(law);
   };
+  const auto and_kinetic = [&](const auto& law) -> decltype(auto) {
+    return common.kinetic_friction_ratio < 1.0 ? and_rolling(WithKineticFriction(law, common)) : and_rolling(law);
+  };
   const auto in = [&](auto film) -> decltype(auto) {
     using Film = typename decltype(film)::type;
     switch (common.law) {
       case Law::linear:
-        return and_rolling(SpringDashpotFriction<Film>(common, time_step));
+        return and_kinetic(SpringDashpotFriction<Film>(common, time_step));
       case Law::hertz_mindlin:
-        return and_rolling(HertzMindlinFriction<Film>(common, time_step));
+        return and_kinetic(HertzMindlinFriction<Film>(common, time_step));
     }
     __builtin_unreachable();
   };

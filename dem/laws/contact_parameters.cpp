@@ -99,6 +99,11 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
   visit.real("friction", contact.friction, {.meaning = "coefficient between grains", .at_least = 0.0});
   visit.real("wall_friction", contact.wall_friction,
              {.meaning = "coefficient between grain and wall", .at_least = 0.0});
+  visit.real("kinetic_friction_ratio", contact.kinetic_friction_ratio,
+             {.meaning = "kinetic over static friction: of contacts that slide over that of contacts that stick",
+              .above = 0.0,
+              .at_most = 1.0,
+              .example = 0.8});
   visit.real(
       "rolling_friction", contact.rolling_friction,
       {.meaning = "moment against rolling over normal force and radius (R1 R2/(R1 + R2)), between grains; 0: none",

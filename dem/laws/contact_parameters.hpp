@@ -26,20 +26,21 @@ struct LiquidBridgeParameters {
 
 // One material, in contact with itself.
 struct ContactParameters {
-  Law law = Law::linear;               // the same for all materials of a run, as are the last four
-  double normal_stiffness = 0.0;       // N/m, > 0; linear law
-  double tangential_stiffness = 0.0;   // N/m, >= 0; linear law
-  double youngs_modulus = 0.0;         // Pa, > 0; Hertz and Mindlin
-  double poisson_ratio = 0.0;          // > -1, at most 1/2; Hertz and Mindlin
-  std::optional<double> restitution;   // 0 < e <= 1; exactly one of restitution and damping is given
-  std::optional<double> damping;       // kg/s, >= 0, of every contact; linear law
-  double friction = 0.0;               // between grains, >= 0
-  double wall_friction = 0.0;          // between a grain and a wall, >= 0: the default of the planes in walls.hpp
-  double rolling_friction = 0.0;       // between grains, >= 0; 0: none (rolling_friction.hpp)
-  double wall_rolling_friction = 0.0;  // between a grain and a wall, >= 0: the default of the planes
-  double rolling_damping = 0.3;        // over the critical one, >= 0; the same for all materials of a run
-  bool attraction = false;             // true if the dashpot may pull at the end of the contact
-  double tangential_damping = 0.0;     // dashpot across the contact over the one along the normal, >= 0
+  Law law = Law::linear;                // the same for all materials of a run, as are the last six
+  double normal_stiffness = 0.0;        // N/m, > 0; linear law
+  double tangential_stiffness = 0.0;    // N/m, >= 0; linear law
+  double youngs_modulus = 0.0;          // Pa, > 0; Hertz and Mindlin
+  double poisson_ratio = 0.0;           // > -1, at most 1/2; Hertz and Mindlin
+  std::optional<double> restitution;    // 0 < e <= 1; exactly one of restitution and damping is given
+  std::optional<double> damping;        // kg/s, >= 0, of every contact; linear law
+  double friction = 0.0;                // between grains, >= 0
+  double wall_friction = 0.0;           // between a grain and a wall, >= 0: the default of the planes in walls.hpp
+  double rolling_friction = 0.0;        // between grains, >= 0; 0: none (rolling_friction.hpp)
+  double wall_rolling_friction = 0.0;   // between a grain and a wall, >= 0: the default of the planes
+  double kinetic_friction_ratio = 1.0;  // friction of contacts that slide over that of those that stick, > 0, <= 1
+  double rolling_damping = 0.3;         // over the critical one, >= 0
+  bool attraction = false;              // true if the dashpot may pull at the end of the contact
+  double tangential_damping = 0.0;      // dashpot across the contact over the one along the normal, >= 0
   std::optional<LiquidBridgeParameters> liquid_bridge;  // none: dry
   double film_viscosity = 0.0;  // Pa s, of the liquid around all grains (contact_film.hpp); 0: none
   bool operator==(const ContactParameters&) const = default;

@@ -15,6 +15,8 @@ void check(const ContactParameters& p) {
   require_not_negative("tangential_damping", p.tangential_damping, "");
   require_not_negative("friction", p.friction, "");
   require_not_negative("wall_friction", p.wall_friction, "");
+  require(p.kinetic_friction_ratio > 0.0 && p.kinetic_friction_ratio <= 1.0, "kinetic_friction_ratio",
+          p.kinetic_friction_ratio, "", "greater than 0 and at most 1");
   require_not_negative("rolling_friction", p.rolling_friction, "");
   require_not_negative("wall_rolling_friction", p.wall_rolling_friction, "");
   require_not_negative("rolling_damping", p.rolling_damping, "");
@@ -89,9 +91,10 @@ double geometric_mean(double a, double b) { return a == b ? a : std::sqrt(a * b)
 
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b) {
   if (a.law != b.law || a.attraction != b.attraction || a.tangential_damping != b.tangential_damping ||
-      a.rolling_damping != b.rolling_damping)
+      a.rolling_damping != b.rolling_damping || a.kinetic_friction_ratio != b.kinetic_friction_ratio)
     throw InputError(
-        "Two materials differ in contact law, attraction, tangential or rolling damping; give all the same.");
+        "Two materials differ in contact law, attraction, tangential or rolling damping or in kinetic_friction_ratio; "
+        "give all the same.");
   if (a.liquid_bridge != b.liquid_bridge)
     throw InputError("Two materials differ in their liquid bridges; give all the same.");
   if (a.restitution.has_value() != b.restitution.has_value())

@@ -268,12 +268,14 @@ TEST(GrainCaseReader, DryGrainsRefuseAStepTooLong) {
       << message;
 }
 
-TEST(GrainCaseReader, RollingFrictionIsAPartOfTheMaterial) {
-  const Case c = read(flume, {"contact.rolling_friction=0.1", "contact.wall_rolling_friction=0.05",
-                              "contact.rolling_damping=0.5", "grains.1.contact={rolling_friction: 0.2}"});
+TEST(GrainCaseReader, RollingAndKineticFrictionArePartsOfTheMaterial) {
+  const Case c =
+      read(flume, {"contact.rolling_friction=0.1", "contact.wall_rolling_friction=0.05", "contact.rolling_damping=0.5",
+                   "contact.kinetic_friction_ratio=0.8", "grains.1.contact={rolling_friction: 0.2}"});
   EXPECT_EQ(c.contact.rolling_friction, 0.1);
   EXPECT_EQ(c.contact.wall_rolling_friction, 0.05);
   EXPECT_EQ(c.contact.rolling_damping, 0.5);
+  EXPECT_EQ(c.contact.kinetic_friction_ratio, 0.8);
   EXPECT_EQ(*c.grains[1].contact->rolling_friction, 0.2);
   EXPECT_EQ(read(resolved_yaml(c)), c) << resolved_yaml(c);
   EXPECT_EQ(read(flume).contact.rolling_friction, 0.0);
