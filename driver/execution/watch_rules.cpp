@@ -118,6 +118,15 @@ double speed_of_overlaps(const Case& c) {
   return speed;
 }
 
+// m/s: the same of grains that touch where they are placed, up to rounding; all that moves grains at rest without
+// weight.
+double speed_of_rounding(const Case& c) {
+  constexpr double overlap = 1e-9;  // diameters
+  double largest = 0.0;
+  for (const beds::Population& grains : c.grains) largest = std::max(largest, grains.largest_diameter());
+  return overlap * largest * std::numbers::pi / shortest_contact(c);
+}
+
 // m/s. Through walled boxes: sqrt(2 sum |g_a| L_a); along periodic axes a dry grain is accelerated as long as the run
 // lasts. In a fluid no faster than the terminal speed at a drag coefficient of 0.4, the least a sphere has below the
 // drag crisis (Clift, Grace and Weber 1978), on top of what the fluid does.
@@ -227,7 +236,9 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
 }  // namespace
 
 double expected_grain_speed(const Case& c) {
-  return fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) + speed_of_overlaps(c);
+  const double speed =
+      fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) + speed_of_overlaps(c);
+  return std::max(speed, speed_of_rounding(c));
 }
 
 WatchLimits mean_density_limits(const Case& c) {

@@ -4,6 +4,7 @@
 Called by ctest: stop_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -113,6 +114,16 @@ class Stopping(ProgramTest):
         else:
             self.assert_refused("run", self.case, "--restart", "run", words=["has no checkpoint"])
 
+    @staticmethod
+    def catches_signals(process):
+        """Whether the process has come so far that SIGTERM and SIGINT no longer end it."""
+        try:
+            status = Path(f"/proc/{process}/status").read_text()
+        except OSError:   # it has ended
+            return False
+        caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", status)[1], 16)
+        return all(caught >> (signalled - 1) & 1 for signalled in (signal.SIGTERM, signal.SIGINT))
+
     def stopped_before_it_begins(self, ranks, signalled):
         """A run that takes long to place its grains, stopped as soon as its processes are there."""
         command = self.command(("run", self.case, "--set", DENSE, "--set", "run.time_step=null"), ranks)
@@ -122,10 +133,9 @@ class Stopping(ProgramTest):
         )
         self.addCleanup(process.kill)
         for _ in range(600):
-            if len(self.processes()) == max(1, ranks):
+            if len(self.processes()) == max(1, ranks) and all(map(self.catches_signals, self.processes())):
                 break
             time.sleep(0.05)
-        time.sleep(1.0)   # for its libraries to be loaded, and MPI to be started
         process.send_signal(signalled)
         said, complaint = process.communicate(timeout=40)
         self.assertEqual(files_below(self.folder), ["case.yaml"], said + complaint)

@@ -81,5 +81,14 @@ TEST(WatchRules, GrainsMayFallAndBeCarried) {
               3.0 + 3.0 * 9.8 * std::sin(angle) + std::sqrt(2.0 * 9.8 * std::cos(angle) * 0.075), 1e-9);
 }
 
+// Grains that a dense placement leaves in touch part by rounding, and such a run goes on.
+TEST(WatchRules, GrainsWithoutWeightMayMoveByRounding) {
+  Case still = read_text(flume);
+  still.system = SystemKind::grains;
+  still.gravity.magnitude = 0.0;
+  EXPECT_GT(expected_grain_speed(still), 1e-10);
+  EXPECT_LT(expected_grain_speed(still), 1e-6);
+}
+
 }  // namespace
 }  // namespace thalweg::driver::watch_rules_test
