@@ -27,11 +27,12 @@ double import_fluid(lbm::Fluid<Real>& fluid, ArchiveReader& archive, double spac
                       saved_length, "xyz"[a], length));
   }
   const double saved_step = archive.real_attribute("system/time_step");
+  const double velocity_unit = spacing / saved_step / units.velocity();
+  fluid.begin_control_of(archive, velocity_unit * units.time_step / saved_step);
   if (same_cells && saved_step == units.time_step) {
     fluid.load_populations(archive);
     return 1.0;
   }
-  const double velocity_unit = spacing / saved_step / units.velocity();
   lbm::transfer_flow(fluid, archive, velocity_unit);
   return velocity_unit * velocity_unit;
 }

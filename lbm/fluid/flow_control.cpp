@@ -21,6 +21,17 @@ void FlowControl::update(double mean_velocity) {
   countdown_ = target_.interval - 1;
 }
 
+void FlowControl::begin_with(double force) {
+  const double t = target_.response_time;
+  integral_ = 4.0 * t * t * force;
+  force_ = force;
+}
+
+std::optional<double> FlowControl::saved_force(const ArchiveReader& archive) {
+  if (!archive.has("fluid/flow_control_force")) return std::nullopt;
+  return archive.real_attribute("fluid/flow_control_force");
+}
+
 void FlowControl::save(ArchiveWriter& archive) const {
   archive.attribute("fluid/flow_control_integral", integral_);
   archive.attribute("fluid/flow_control_force", force_);

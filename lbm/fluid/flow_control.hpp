@@ -10,6 +10,7 @@
 #include "core/base/archive.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace thalweg::lbm {
 
@@ -32,6 +33,10 @@ public:
   bool due() { return countdown_-- <= 0; }
   // Takes the mean velocity along the axis; sets the force for the next interval.
   void update(double mean_velocity);
+  // Begins with a force (lattice units), as in a flow that it keeps steady.
+  void begin_with(double force);
+  // The force of a control that was saved, in its lattice units; none of a flow that none controlled.
+  static std::optional<double> saved_force(const ArchiveReader& archive);
 
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);

@@ -111,6 +111,15 @@ void Fluid<Real>::control_flow(const FlowTarget& target) {
   control_.emplace(target);
 }
 
+template <typename Real>
+void Fluid<Real>::begin_control_of(const ArchiveReader& archive, double unit) {
+  const std::optional<double> force = FlowControl::saved_force(archive);
+  if (!control_ || !force) return;
+  control_->begin_with(unit * *force);
+  parameters_.force[control_->target().axis] = control_->force();
+  carry_force();
+}
+
 // The populations are post-collision and contain the whole force of that collision.
 template <typename Real>
 void Fluid<Real>::update_force() {

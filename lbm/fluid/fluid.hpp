@@ -56,6 +56,9 @@ public:
   void carry_force();
   // Hands the force along one axis to a controller; its state is part of the checkpoint.
   void control_flow(const FlowTarget& target);
+  // Lets the controller, if there is one, begin with that of a saved flow, if that had one. unit: of an acceleration of
+  // the saved lattice, dx/dt^2, over that of this one.
+  void begin_control_of(const ArchiveReader& archive, double unit);
 
   // exchange_halo() in two halves, so that the caller can work meanwhile; no population may be written in between.
   void start_halo_exchange() { halo_.start(); }
