@@ -91,11 +91,15 @@ Warnings unstable_collision(const Case& c) {
        {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}, {{excess_change(c, calm_excess, Rounding::up)}, {}}}}};
 }
 
+// With trt everywhere, and cli at bodies, steady flow does not depend on the relaxation time; drag was measured up
+// to 1.94 (benchmarks/validation/laminar_bed_load).
 Warnings long_relaxation(const Case& c) {
-  const double excess = relaxation_time(c) - 0.5;
-  if (excess * (1.0 - limit_rounding) <= 1.0) return {};
+  const bool exact = c.fluid.collision == lbm::CollisionModel::trt &&
+                     ((c.grains.empty() && c.solids.empty()) || c.coupling.links == bodies::LinkRule::cli);
+  const double excess = relaxation_time(c) - 0.5, longest = exact ? 1.45 : 1.0;
+  if (excess * (1.0 - limit_rounding) <= longest) return {};
   return {{fmt::format("The relaxation time, {:.2g}, is so large that walls and grains lose accuracy", excess + 0.5),
-           {{{excess_change(c, 1.0, Rounding::down)}, {}}},
+           {{{excess_change(c, longest, Rounding::down)}, {}}},
            "a shorter fluid.time_step"}};
 }
 

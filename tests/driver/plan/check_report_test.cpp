@@ -204,6 +204,27 @@ TEST(Remedy, IsASpacingThatDividesTheBox) {
   EXPECT_EQ(spacing_change(c, 0.9e-3).value, "0.0005");
 }
 
+// With trt and cli the drag of dense arrays is within 2 % at a relaxation time of 1.94
+// (benchmarks/validation/laminar_bed_load).
+TEST(CheckReport, WarnsOfLongRelaxationWhereItCostsAccuracy) {
+  Case c = wide_bed();
+  const auto warns = [&c](double relaxation_time) {
+    c.fluid.kinematic_viscosity =
+        (relaxation_time - 0.5) / 3.0 * c.domain.spacing * c.domain.spacing / *c.fluid.time_step;
+    return any_contains(warnings(c), "is so large that walls and grains lose accuracy");
+  };
+  c.fluid.collision = lbm::CollisionModel::trt;
+  c.coupling.links = bodies::LinkRule::cli;
+  EXPECT_FALSE(warns(1.94));
+  EXPECT_TRUE(warns(2.0));
+  c.coupling.links = bodies::LinkRule::bouzidi;
+  EXPECT_FALSE(warns(1.49));
+  EXPECT_TRUE(warns(1.94));
+  c.coupling.links = bodies::LinkRule::cli;
+  c.fluid.collision = lbm::CollisionModel::trt_at_bodies;
+  EXPECT_TRUE(warns(1.94));
+}
+
 // A fact and no warning: nothing is wrong with a case of light and heavy grains.
 TEST(FlowReport, GivesTheShieldsNumberOfEveryDensity) {
   Case c = wide_bed();
