@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::beds {
 
@@ -201,17 +202,12 @@ double median_by_mass(std::span<const SizeCount> sizes, bool disks) {
 }
 
 std::vector<std::size_t> shuffled_places(std::int64_t count, std::int64_t seed) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t grain) {
-    return uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw);
-  };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const double ka = key(a), kb = key(b);
-    return ka != kb ? ka < kb : a < b;
-  });
+  std::vector<std::pair<double, std::size_t>> order(static_cast<std::size_t>(count));  // random number, grain
+  for (std::size_t grain = 0; grain < order.size(); ++grain)
+    order[grain] = {uniform_random(static_cast<std::uint64_t>(seed), grain, size_draw), grain};
+  std::sort(order.begin(), order.end());
   std::vector<std::size_t> place(order.size());
-  for (std::size_t p = 0; p < order.size(); ++p) place[order[p]] = p;
+  for (std::size_t p = 0; p < order.size(); ++p) place[order[p].second] = p;
   return place;
 }
 

@@ -8,22 +8,14 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 namespace thalweg::dem {
 
 namespace {
-
-template <bool fetch, typename Batch>
-void evaluate_near_pairs(const std::vector<NearPair>& near, Batch& batch) {
-  const std::span<const NearPair> all(near);
-  constexpr std::size_t size = Batch::capacity, ahead = 24;
-  for (std::size_t n = 0; n < all.size(); n += size)
-    batch.template evaluate<fetch>(all.subspan(n, std::min(size, all.size() - n)),
-                                   all.subspan(std::min(n + ahead, all.size())));
-}
 
 template <typename ContactLaw>
 void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const PeriodicBox& box,
@@ -36,42 +28,89 @@ void evaluate_pairs(const ContactLaw& law, PackedGrainState& grains, NeighbourLi
   // Data that do not stay in the cache from one sub-step to the next are prefetched.
   constexpr std::size_t cached = 2 << 20;  // bytes
   constexpr std::size_t bytes_a_pair = sizeof(NearPair) + sizeof(double) * ContactRows::width_of<ContactLaw>;
-  const std::vector<NearPair>& near = list.near.pairs();
-  if (near.size() * bytes_a_pair + grains.size() * sizeof(PackedGrain) > cached)
-    evaluate_near_pairs<true>(near, batch);
-  else
-    evaluate_near_pairs<false>(near, batch);
+  const std::span<const NearPair> near(list.near.pairs());
+  const bool stays = near.size() * bytes_a_pair + grains.size() * sizeof(PackedGrain) <= cached;
+  constexpr std::size_t size = ContactKernel<ContactLaw>::capacity, ahead = 24;
+  for (std::size_t n = 0; n < near.size(); n += size)
+    batch.evaluate(near.subspan(n, std::min(size, near.size() - n)),
+                   near.subspan(stays ? near.size() : std::min(n + ahead, near.size())));
 }
 
-// Load by the law on the first body of a contact, whose history it updates; friction: of a wall.
-template <typename ContactLaw>
-ContactLoad averaged_load(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
-                          std::optional<double> friction, const double* row, typename ContactLaw::History& history) {
-  auto coefficients = coefficients_of<typename ContactLaw::Coefficients>(entry);
-  if (friction) coefficients.friction = *friction;
-  typename ContactLaw::Constants constants;
-  std::memcpy(history.data(), row, sizeof(history));
-  std::memcpy(&constants, row + history.size(), sizeof(constants));
-  return law(motion, coefficients, constants, history);
+// A contact law for one contact at a time: one function a law, where a loop for each of them takes the compiler far
+// longer.
+class SingleContacts {
+public:
+  virtual ~SingleContacts() = default;
+  virtual double range() const = 0;
+  // The load on the first body; brings the history in the row to the end of the step. friction: of a wall.
+  virtual ContactLoad advance(const ContactMotion& motion, const MaterialTable::Entry& entry,
+                              std::optional<double> friction, double* row) const = 0;
+  // The load with the history as it is; goes_on: false if the one in the row is not its own.
+  virtual ContactLoad present(const ContactMotion& motion, const MaterialTable::Entry& entry,
+                              std::optional<double> friction, const double* row, bool goes_on) const = 0;
+};
+
+template <IsContactLaw ContactLaw>
+class SingleContactsOf final : public SingleContacts {
+public:
+  explicit SingleContactsOf(const ContactLaw& law) : law_(law) {}
+
+  double range() const override { return law_.range(); }
+  ContactLoad advance(const ContactMotion& motion, const MaterialTable::Entry& entry, std::optional<double> friction,
+                      double* row) const override {
+    History history = history_of(row);
+    const ContactLoad load = load_with(motion, entry, friction, row, history);
+    std::copy(history.begin(), history.end(), row);
+    return load;
+  }
+  ContactLoad present(const ContactMotion& motion, const MaterialTable::Entry& entry, std::optional<double> friction,
+                      const double* row, bool goes_on) const override {
+    History history = goes_on ? history_of(row) : History{};
+    return load_with(motion, entry, friction, row, history);
+  }
+
+private:
+  using History = typename ContactLaw::History;
+
+  static History history_of(const double* row) {
+    History history;
+    std::copy_n(row, history.size(), history.begin());
+    return history;
+  }
+  ContactLoad load_with(const ContactMotion& motion, const MaterialTable::Entry& entry, std::optional<double> friction,
+                        const double* row, History& history) const {
+    auto coefficients = coefficients_of<typename ContactLaw::Coefficients>(entry);
+    if (friction) coefficients.friction = *friction;
+    typename ContactLaw::Constants constants;
+    std::memcpy(&constants, row + history.size(), sizeof(constants));
+    return law_(motion, coefficients, constants, history);
+  }
+
+  ContactLaw law_;
+};
+
+// time_step: s, with 0 no spring grows.
+std::unique_ptr<const SingleContacts> single_contacts(const ContactRows& rows, double time_step) {
+  const auto single = [](const auto& law) -> std::unique_ptr<const SingleContacts> {
+    return std::make_unique<const SingleContactsOf<std::decay_t<decltype(law)>>>(law);
+  };
+  return rows.law().at_surface ? with_surface_law(rows.law(), time_step, single)
+                               : with_law(rows.law(), time_step, single);
 }
 
 // Adds the load of a wall or a solid to a grain, and advances the history in the rows of contacts of its kind.
-template <typename ContactLaw>
-void evaluate(const ContactLaw& law, const ContactMotion& motion, const WallTouch& touch, PackedGrain& grain,
+void evaluate(const SingleContacts& law, const ContactMotion& motion, const WallTouch& touch, PackedGrain& grain,
               ContactRows& rows, const MaterialTable::Entry& entry) {
-  typename ContactLaw::History history;
-  const ContactLoad f = averaged_load(law, motion, entry, touch.friction, rows[touch.row], history);
-  std::copy(history.begin(), history.end(), rows[touch.row]);
+  const ContactLoad f = law.advance(motion, entry, touch.friction, rows[touch.row]);
   const Vec3 tangential(f.tx, f.ty, f.tz);
   grain.force += double4(f.normal * touch.view.normal + tangential);
   grain.torque += double4(touch.view.distance * tangential.cross(touch.view.normal));
-  if constexpr (ContactLaw::rolls) grain.torque += Double4{f.mx, f.my, f.mz, 0.0};
+  grain.torque += Double4{f.mx, f.my, f.mz, 0.0};
 }
 
-template <typename ContactLaw>
-[[gnu::flatten]] void evaluate_walls(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list,
-                                     const Surroundings& around, const MaterialTable& materials,
-                                     std::span<const std::uint8_t> material) {
+void evaluate_walls(const SingleContacts& law, PackedGrainState& grains, NeighbourList& list,
+                    const Surroundings& around, const MaterialTable& materials,
+                    std::span<const std::uint8_t> material) {
   for_each_wall_touch(grains, list, around, [&](const WallTouch& touch) {
     const ContactMotion motion = motion_of(body_of(grains, touch.slot), touch);
     if (motion.overlap > -law.range())
@@ -81,9 +120,9 @@ template <typename ContactLaw>
   });
 }
 
-template <typename ContactLaw>
-void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
-                     const MaterialTable& materials, std::span<const std::uint8_t> material) {
+void evaluate_solids(const SingleContacts& law, PackedGrainState& grains, NeighbourList& list,
+                     const Surroundings& around, const MaterialTable& materials,
+                     std::span<const std::uint8_t> material) {
   const auto visit = [&](const WallTouch& touch) {
     if (!touch.goes_on) list.solid_rows.forget(touch.row);
     evaluate(law, motion_of(body_of(grains, touch.slot), touch), touch, grains[touch.slot], list.solid_rows,
@@ -94,12 +133,10 @@ void evaluate_solids(const ContactLaw& law, PackedGrainState& grains, NeighbourL
 
 // Force on the first body for observers, with the history unchanged; none if the bodies neither touch nor act across
 // the gap.
-template <typename ContactLaw>
-std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
-                             std::optional<double> friction, const double* row) {
+std::optional<Vec3> force_of(const SingleContacts& law, const ContactMotion& motion, const MaterialTable::Entry& entry,
+                             std::optional<double> friction, const double* row, bool goes_on = true) {
   if (!(motion.overlap > -law.range())) return std::nullopt;
-  typename ContactLaw::History history;
-  const ContactLoad f = averaged_load(law, motion, entry, friction, row, history);
+  const ContactLoad f = law.present(motion, entry, friction, row, goes_on);
   const Vec3 force = f.normal * normal_of(motion) + Vec3(f.tx, f.ty, f.tz);
   if (!(motion.overlap > 0.0) && force.isZero(0.0)) return std::nullopt;
   return force;
@@ -109,17 +146,16 @@ std::optional<Vec3> force_of(const ContactLaw& law, const ContactMotion& motion,
 template <typename Wanted, typename Visitor>
 void visit_pairs(const GrainStore& store, const NeighbourList& list, const PeriodicBox& box,
                  const MaterialTable& materials, const Wanted& wanted, Visitor&& visit) {
-  with_law(list.pair_rows.law(), 0.0, [&](const auto& law) {
-    for (std::size_t number = 0; number < list.pairs.size(); ++number) {
-      const PairContact& c = list.pairs[number];
-      if (!wanted(c.first) && !wanted(c.second)) continue;
-      const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
-      const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second), separation);
-      const MaterialTable::Entry& entry = materials.pair(store.material[c.first], store.material[c.second]);
-      if (const std::optional<Vec3> force = force_of(law, motion, entry, std::nullopt, list.pair_rows[number]))
-        visit(number, motion, separation, *force);
-    }
-  });
+  const auto law = single_contacts(list.pair_rows, 0.0);
+  for (std::size_t number = 0; number < list.pairs.size(); ++number) {
+    const PairContact& c = list.pairs[number];
+    if (!wanted(c.first) && !wanted(c.second)) continue;
+    const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
+    const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second), separation);
+    const MaterialTable::Entry& entry = materials.pair(store.material[c.first], store.material[c.second]);
+    if (const std::optional<Vec3> force = force_of(*law, motion, entry, std::nullopt, list.pair_rows[number]))
+      visit(number, motion, separation, *force);
+  }
 }
 
 }  // namespace
@@ -128,11 +164,9 @@ void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surr
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
            [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });
-  with_law(list.wall_rows.law(), time_step,
-           [&](const auto& law) { evaluate_walls(law, grains, list, around, materials, material); });
+  evaluate_walls(*single_contacts(list.wall_rows, time_step), grains, list, around, materials, material);
   if (list.solids.empty()) return;
-  with_surface_law(list.solid_rows.law(), time_step,
-                   [&](const auto& law) { evaluate_solids(law, grains, list, around, materials, material); });
+  evaluate_solids(*single_contacts(list.solid_rows, time_step), grains, list, around, materials, material);
 }
 
 void for_each_contact_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
@@ -156,26 +190,20 @@ void for_each_contact_end(const GrainStore& store, const NeighbourList& list, co
 
 void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
                            const MaterialTable& materials, const ContactEndVisitor& visit) {
-  const auto visit_acting = [&](const auto& law, const ContactRows& rows, const WallTouch& touch) {
-    using ContactLaw = std::decay_t<decltype(law)>;
-    std::array<double, ContactRows::width_of<ContactLaw>> row;
-    std::copy_n(rows[touch.row], row.size(), row.begin());
-    if (!touch.goes_on) std::fill_n(row.begin(), std::tuple_size_v<typename ContactLaw::History>, 0.0);
+  const auto visit_acting = [&](const SingleContacts& law, const ContactRows& rows, const WallTouch& touch) {
     const ContactMotion motion = motion_of(body_of(store, touch.slot), touch);
-    const std::optional<Vec3> force =
-        force_of(law, motion, materials.wall(store.material[touch.slot]), touch.friction, row.data());
+    const MaterialTable::Entry& entry = materials.wall(store.material[touch.slot]);
+    const std::optional<Vec3> force = force_of(law, motion, entry, touch.friction, rows[touch.row], touch.goes_on);
     if (!force || store.is_ghost(touch.slot)) return;
     const Vec3 arm = (motion.overlap - store.radius[touch.slot]) * normal_of(motion);
     visit(touch.slot, {arm, *force, touch.partner(), arm});
   };
-  with_law(list.wall_rows.law(), 0.0, [&](const auto& law) {
-    for_each_wall_touch(store, list, around, [&](const WallTouch& t) { visit_acting(law, list.wall_rows, t); });
-  });
+  const auto with_walls = single_contacts(list.wall_rows, 0.0);
+  for_each_wall_touch(store, list, around, [&](const WallTouch& t) { visit_acting(*with_walls, list.wall_rows, t); });
   if (list.solids.empty()) return;
-  with_surface_law(list.solid_rows.law(), 0.0, [&](const auto& law) {
-    for_each_solid_touch(store, list, around, law.range(),
-                         [&](const WallTouch& t) { visit_acting(law, list.solid_rows, t); });
-  });
+  const auto with_solids = single_contacts(list.solid_rows, 0.0);
+  for_each_solid_touch(store, list, around, with_solids->range(),
+                       [&](const WallTouch& t) { visit_acting(*with_solids, list.solid_rows, t); });
 }
 
 }  // namespace thalweg::dem

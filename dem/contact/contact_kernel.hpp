@@ -69,16 +69,13 @@ public:
     for (std::size_t n = 0; n < coefficients; ++n) std::fill_n(coefficient_[n], capacity, only[n]);
   }
 
-  // near: at most `capacity` pairs. fetch: prefetches grains and rows of as many of `behind`, the pairs that come
-  // later.
-  template <bool fetch>
+  // near: at most `capacity` pairs. Prefetches grains and rows of as many of `behind`, pairs that come later.
   void evaluate(std::span<const NearPair> near, std::span<const NearPair> behind) {
     const int count = static_cast<int>(near.size()), rounded = (count + lanes - 1) / lanes * lanes;
     std::copy(near.begin(), near.end(), pair_);
     std::fill(pair_ + count, pair_ + rounded, near[0]);
     for (int k = 0; k < rounded; k += 4) {
-      if constexpr (fetch)
-        for (std::size_t n = k; n < std::min<std::size_t>(k + 4, behind.size()); ++n) prefetch(behind[n]);
+      for (std::size_t n = k; n < std::min<std::size_t>(k + 4, behind.size()); ++n) prefetch(behind[n]);
       gather(k);
     }
     if (materials_.count() > 1) gather_coefficients(rounded);

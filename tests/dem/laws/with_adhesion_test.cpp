@@ -72,7 +72,7 @@ private:
     ContactKernel<Sticky> kernel(Sticky(Springs(contact(), time_step), work), grains_,
                                  reinterpret_cast<double*>(row_.data()), box_, table_, material);
     const NearPair pair{0, 1, 0};
-    kernel.evaluate<false>({&pair, 1}, {});
+    kernel.evaluate({&pair, 1}, {});
   }
 
   PeriodicBox box_{Vec3(0.02, 0.02, 0.02), {false, false, false}};
