@@ -92,7 +92,7 @@ Warnings unstable_collision(const Case& c) {
 }
 
 // With trt everywhere, and cli at bodies, steady flow does not depend on the relaxation time; drag was measured up
-// to 1.94 (benchmarks/validation/laminar_bed_load).
+// to 1.94 (benchmarks/validation/simple_cubic_arrays).
 Warnings long_relaxation(const Case& c) {
   const bool exact = c.fluid.collision == lbm::CollisionModel::trt &&
                      ((c.grains.empty() && c.solids.empty()) || c.coupling.links == bodies::LinkRule::cli);

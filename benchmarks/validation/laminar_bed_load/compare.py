@@ -24,7 +24,7 @@ from thalweg.layers import layer_profiles
 from thalweg.tables import read_rows
 
 COLUMNS = [
-    "run", "cells [1]", "friction [1]", "from [s]", "until [s]", "reynolds_number [1]", "clear_height [diameter]",
+    "run", "cells [1]", "friction [1]", "kinetic_friction [1]", "from [s]", "until [s]", "reynolds_number [1]", "clear_height [diameter]",
     "shields_number [1]", "bed_fraction [1]", "volume_rate [1]", "error [1]", "independent [1]",
     "solid_rate [1]", "mobile_layer [diameter]",
 ]
@@ -68,8 +68,15 @@ def measured(folder):
         fraction[core].mean(), volume_rate, volume_rate * solid.error / solid.mean,
         solid.independent, solid.mean / discharge, (surface - mobile.min()) / d,
     ]
-    names = [run.folder.name, f"{d / float(case['domain']['spacing']):.4g}", f"{float(case['contact']['friction']):g}"]
+    friction = float(case["contact"]["friction"])
+    kinetic = friction * float(case["contact"].get("kinetic_friction_ratio", 1.0))
+    names = [run.folder.name, f"{d / float(case['domain']['spacing']):.4g}", f"{friction:g}", f"{kinetic:g}"]
     return dict(zip(COLUMNS, names + [f"{float(value):.4g}" for value in values]))
+
+
+def friction_of(row):
+    static, kinetic = row["friction [1]"], row["kinetic_friction [1]"]
+    return f"friction {static}" + (f", sliding {kinetic}" if kinetic != static else "")
 
 
 def reference_of(reynolds, references):
@@ -86,7 +93,7 @@ def report(rows, references):
         in_range = theirs["experiment_low [1]"] <= rate <= theirs["experiment_high [1]"]
         good = in_range and abs(rate / theirs["volume_rate [1]"] - 1.0) <= ACCEPTED
         print(
-            f"{row['run']}: {row['cells [1]']} cells, friction {row['friction [1]']}, {v['from [s]']:g} to"
+            f"{row['run']}: {row['cells [1]']} cells, {friction_of(row)}, {v['from [s]']:g} to"
             f" {v['until [s]']:.3g} s, Re_b {v['reynolds_number [1]']:.3g} ({reference['case']}:"
             f" {theirs['reynolds_number [1]']:g}), clear height {v['clear_height [diameter]']:.2f} d"
             f" ({theirs['clear_height [diameter]']:g}), Shields number {v['shields_number [1]']:.3f}"
@@ -107,10 +114,10 @@ def draw(rows, references, name):
                 label="experiment, Aussillous et al. 2013")
     ax.plot(of(references, "shields_number [1]"), of(references, "volume_rate [1]"), "k^",
             label="simulations, Biegert et al. 2017")
-    for friction in sorted({row["friction [1]"] for row in rows}, reverse=True):
-        chosen = [row for row in rows if row["friction [1]"] == friction]
+    for friction in sorted({friction_of(row) for row in rows}, reverse=True):
+        chosen = [row for row in rows if friction_of(row) == friction]
         ax.errorbar(of(chosen, "shields_number [1]"), of(chosen, "volume_rate [1]"), of(chosen, "error [1]"), fmt="o",
-                    capsize=3, label=f"Thalweg, friction {friction}")
+                    capsize=3, label=f"Thalweg, {friction}")
     ax.set(yscale="log", xlabel="Shields number", ylabel="$q_v/q_f$")
     ax.grid(color="#e5e8ea", linewidth=0.8)
     ax.legend(fontsize=8)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
+"""Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5 1.94]
 
 Runs arrays of five solid fractions, up to that of touching spheres, with both link rules and several relaxation times,
 each with the spheres at a few positions relative to the cells. Appends a line per run to OUTPUT_FOLDER/dense.csv, skips
@@ -68,7 +68,7 @@ def main():
     parser.add_argument("thalweg")
     parser.add_argument("output", type=Path, metavar="OUTPUT_FOLDER")
     parser.add_argument("--collision", default="trt")
-    parser.add_argument("--tau", nargs="+", type=float, default=[0.6, 1.0, 1.5])
+    parser.add_argument("--tau", nargs="+", type=float, default=[0.6, 1.0, 1.5, 1.94])
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
     table = arguments.output / "dense.csv"

@@ -205,7 +205,7 @@ TEST(Remedy, IsASpacingThatDividesTheBox) {
 }
 
 // With trt and cli the drag of dense arrays is within 2 % at a relaxation time of 1.94
-// (benchmarks/validation/laminar_bed_load).
+// (benchmarks/validation/simple_cubic_arrays).
 TEST(CheckReport, WarnsOfLongRelaxationWhereItCostsAccuracy) {
   Case c = wide_bed();
   const auto warns = [&c](double relaxation_time) {
