@@ -14,31 +14,13 @@ namespace thalweg::dem::kinetic_friction_test {
 namespace {
 
 constexpr double g = 9.8, static_friction = 0.8, kinetic_friction = 0.2;
+constexpr double no_rolling = 1.0;  // a rolling friction above the slopes
 
-// Glass with a tangential dashpot, so that the swing of the tangential spring dies out; elastic: Hertz and Mindlin.
 ContactParameters two_frictions(bool elastic) {
-  ContactParameters contact = test::glass(0.5);
+  ContactParameters contact = test::damped_glass(elastic);
   contact.friction = contact.wall_friction = static_friction;
   contact.kinetic_friction_ratio = kinetic_friction / static_friction;
-  contact.tangential_damping = 1.0;
-  if (elastic) {
-    contact.law = Law::hertz_mindlin;
-    contact.youngs_modulus = 5e6;
-    contact.poisson_ratio = 0.3;
-  }
   return contact;
-}
-
-// A sphere on a floor under gravity that leans by `slope` towards +x. It cannot roll.
-GrainParameters on_floor(const ContactParameters& contact, double slope) {
-  GrainParameters p = test::parameters(contact, 1e-5, 25);
-  p.walls = {face_plane(test::cube().box(), 2, false, contact.wall_friction)};
-  p.walls[0].rolling_friction = 1.0;
-  const double angle = std::atan(slope);
-  p.body_force = [angle](double mass, double) {
-    return Vec3(mass * g * std::sin(angle), 0.0, -mass * g * std::cos(angle));
-  };
-  return p;
 }
 
 GrainSeed sphere_with(double speed) {
@@ -113,7 +95,7 @@ TEST(KineticFriction, HoldsABodyThatRestsAndNotOneThatSlides) {
   const double down = g * (std::sin(angle) - kinetic_friction * std::cos(angle));
   const double up = g * (std::sin(angle) + kinetic_friction * std::cos(angle));
   for (const bool elastic : {false, true}) {
-    const GrainParameters p = on_floor(two_frictions(elastic), slope);
+    const GrainParameters p = test::on_floor(two_frictions(elastic), no_rolling, slope);
     const auto after = [&p](double speed, double time) {
       GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, {sphere_with(speed)});
       for (int n = 0; n < std::lround(time / 2.5e-4); ++n) test::step(grains);
@@ -147,7 +129,7 @@ TEST(KineticFriction, TakesItsShareInAnImpactThatSlides) {
 
 // A run that is stopped while the contact slides slides on with the same bits.
 TEST(KineticFriction, IsAPartOfACheckpoint) {
-  const GrainParameters p = on_floor(two_frictions(false), 0.35);
+  const GrainParameters p = test::on_floor(two_frictions(false), no_rolling, 0.35);
   GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, {sphere_with(0.05)});
   for (int n = 0; n < 80; ++n) test::step(grains);
   const thalweg::test::MemoryArchive archive = thalweg::test::saved(grains, MPI_COMM_SELF);

@@ -12,37 +12,14 @@ namespace {
 
 constexpr double g = 9.8;
 
-// Glass with a tangential dashpot, so that the swing of the tangential spring dies out; elastic: Hertz and Mindlin.
-ContactParameters rough_glass(bool elastic) {
-  ContactParameters contact = test::glass(0.5);
-  contact.tangential_damping = 1.0;
-  if (elastic) {
-    contact.law = Law::hertz_mindlin;
-    contact.youngs_modulus = 5e6;
-    contact.poisson_ratio = 0.3;
-  }
-  return contact;
-}
-
-// A sphere on a floor under gravity that leans by `slope` towards +x.
-GrainParameters on_floor(bool elastic, double rolling_friction, double slope) {
-  GrainParameters p = test::parameters(rough_glass(elastic), 1e-5, 25);
-  p.walls = {face_plane(test::cube().box(), 2, false, 0.5)};
-  p.walls[0].rolling_friction = rolling_friction;
-  const double angle = std::atan(slope);
-  p.body_force = [angle](double mass, double) {
-    return Vec3(mass * g * std::sin(angle), 0.0, -mass * g * std::cos(angle));
-  };
-  return p;
-}
-
 TEST(RollingFriction, SlowsARollingSphereByFiveSeventhsOfItsFriction) {
   // m a = -f and I alpha = f R - mu_r R m g with a = alpha R and I = 2/5 m R^2: a = -5/7 mu_r g, until it stands.
   const double rolling = 0.05, v0 = 0.1, a = 5.0 / 7.0 * rolling * g;
   for (const bool elastic : {false, true}) {
     GrainSeed seed = test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius), Vec3(v0, 0.0, 0.0));
     seed.angular_velocity = Vec3(0.0, v0 / test::glass_radius, 0.0);
-    GrainDynamics grains(test::cube(), MPI_COMM_SELF, on_floor(elastic, rolling, 0.0), {seed});
+    GrainDynamics grains(test::cube(), MPI_COMM_SELF, test::on_floor(test::damped_glass(elastic), rolling, 0.0),
+                         {seed});
     const Vec3 &x = grains.store().position[0], &v = grains.store().velocity[0];
     double v1 = 0.0;
     for (int n = 0; n < 800; ++n) {
@@ -68,7 +45,8 @@ TEST(RollingFriction, HoldsASphereOnASlopeBelowItsCoefficient) {
   // zeta_r = 0.3, so that on two thirds of the slope nothing gives way.
   const double rolling = 0.1;
   for (const bool elastic : {false, true}) {
-    GrainDynamics grains(test::cube(), MPI_COMM_SELF, on_floor(elastic, rolling, 0.65 * rolling),
+    GrainDynamics grains(test::cube(), MPI_COMM_SELF,
+                         test::on_floor(test::damped_glass(elastic), rolling, 0.65 * rolling),
                          {test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius))});
     for (int n = 0; n < 2000; ++n) test::step(grains);
     const double settled = grains.store().position[0][0];
@@ -88,7 +66,7 @@ TEST(RollingFriction, HoldsASphereOnASlopeBelowItsCoefficient) {
 
 TEST(RollingFriction, LetsASphereRollOnASteeperSlope) {
   const double rolling = 0.1, slope = 0.2, angle = std::atan(slope);
-  GrainDynamics grains(test::cube(), MPI_COMM_SELF, on_floor(false, rolling, slope),
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, test::on_floor(test::damped_glass(false), rolling, slope),
                        {test::glass_sphere(0, Vec3(0.01, 0.025, test::glass_radius))});
   const double a = 5.0 / 7.0 * g * (std::sin(angle) - rolling * std::cos(angle));
   for (int n = 0; n < 200; ++n) test::step(grains);
@@ -99,7 +77,7 @@ TEST(RollingFriction, LetsASphereRollOnASteeperSlope) {
 
 TEST(RollingFriction, PairsKeepMomentumAndAngularMomentum) {
   for (const bool elastic : {false, true}) {
-    GrainParameters p = test::parameters(rough_glass(elastic), 2e-6, 25);
+    GrainParameters p = test::parameters(test::damped_glass(elastic), 2e-6, 25);
     p.contact.rolling_friction = 0.2;
     GrainSeed a = test::glass_sphere(0, Vec3(0.020, 0.025, 0.025), Vec3(0.2, 0.01, 0.0));
     GrainSeed b = test::glass_sphere(1, Vec3(0.0245, 0.0255, 0.025), Vec3(-0.2, 0.0, 0.02), 0.8 * test::glass_radius);
