@@ -1,8 +1,8 @@
 // Static and kinetic friction: a contact sticks up to mu |F_n| and, once it slides, slides under r mu |F_n| until less
 // than that holds it [Luding, Granular Matter 10 (2008) 235].
 //
-// The contact remembers whether it slides. Without that memory its spring would have to grow from the kinetic to the
-// static limit in every step of a slow slide, under a mean friction between the two. The force falls to the kinetic
+// The contact remembers whether it slides. Without that memory the spring of a slow slide would grow from the kinetic
+// to the static limit again and again, and the mean friction would lie between the two. The force falls to the kinetic
 // limit in the sub-step after the one that reached the static limit.
 #pragma once
 
