@@ -94,8 +94,7 @@ std::unique_ptr<const SingleContacts> single_contacts(const ContactRows& rows, d
   const auto single = [](const auto& law) -> std::unique_ptr<const SingleContacts> {
     return std::make_unique<const SingleContactsOf<std::decay_t<decltype(law)>>>(law);
   };
-  return rows.law().at_surface ? with_surface_law(rows.law(), time_step, single)
-                               : with_law(rows.law(), time_step, single);
+  return with_either_law(rows.law(), time_step, single);
 }
 
 // Adds the load of a wall or a solid to a grain, and advances the history in the rows of contacts of its kind.
@@ -164,7 +163,8 @@ void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surr
                        const MaterialTable& materials, std::span<const std::uint8_t> material, double time_step) {
   with_law(list.pair_rows.law(), time_step,
            [&](const auto& law) { evaluate_pairs(law, grains, list, around.box, materials, material); });
-  evaluate_walls(*single_contacts(list.wall_rows, time_step), grains, list, around, materials, material);
+  if (!list.walls.empty())
+    evaluate_walls(*single_contacts(list.wall_rows, time_step), grains, list, around, materials, material);
   if (list.solids.empty()) return;
   evaluate_solids(*single_contacts(list.solid_rows, time_step), grains, list, around, materials, material);
 }

@@ -129,7 +129,7 @@ void take_histories(const std::vector<Contact>& contacts, ContactRows& rows, std
 }  // namespace
 
 ContactRows::ContactRows(const LawChoice& law, std::span<const ContactBodies> bodies) : law_(law) {
-  with_either_law(law_, [&](const auto& chosen) {
+  with_either_law(law_, 0.0, [&](const auto& chosen) {
     using ContactLaw = std::decay_t<decltype(chosen)>;
     history_ = std::tuple_size_v<typename ContactLaw::History>;
     width_ = width_of<ContactLaw>;

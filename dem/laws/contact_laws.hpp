@@ -67,13 +67,13 @@ decltype(auto) with_surface_law(const LawChoice& choice, double time_step, Visit
 
 // with_law() or with_surface_law(), as the choice says.
 template <typename Visitor>
-decltype(auto) with_either_law(const LawChoice& choice, Visitor&& visit) {
-  return choice.at_surface ? with_surface_law(choice, 0.0, visit) : with_law(choice, 0.0, visit);
+decltype(auto) with_either_law(const LawChoice& choice, double time_step, Visitor&& visit) {
+  return choice.at_surface ? with_surface_law(choice, time_step, visit) : with_law(choice, time_step, visit);
 }
 
 // Names and numbers of the doubles that a contact keeps.
 inline std::vector<HistoryPart> history_parts_of(const LawChoice& choice) {
-  return with_either_law(choice, [](const auto& law) {
+  return with_either_law(choice, 0.0, [](const auto& law) {
     return std::vector<HistoryPart>(law.history_parts.begin(), law.history_parts.end());
   });
 }

@@ -25,8 +25,8 @@ from thalweg.tables import read_rows
 
 COLUMNS = [
     "run", "cells [1]", "friction [1]", "kinetic_friction [1]", "from [s]", "until [s]", "reynolds_number [1]",
-    "clear_height [diameter]", "shields_number [1]", "bed_fraction [1]", "volume_rate [1]", "error [1]", "independent [1]",
-    "solid_rate [1]", "mobile_layer [diameter]",
+    "clear_height [diameter]", "shields_number [1]", "bed_fraction [1]", "volume_rate [1]", "error [1]",
+    "independent [1]", "solid_rate [1]", "mobile_layer [diameter]",
 ]
 SURFACE = 0.05             # solid fraction at the surface of the bed, as in the reference
 MOVING = 0.01              # of the velocity of the grains at the surface, above which they count as mobile

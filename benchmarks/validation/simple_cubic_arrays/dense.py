@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5 1.94]
+"""Drag on dense arrays at ten cells per diameter: dense.py THALWEG OUTPUT_FOLDER [--collision bgk] [--tau 0.6 1 1.5]
 
 Runs arrays of five solid fractions, up to that of touching spheres, with both link rules and several relaxation times,
 each with the spheres at a few positions relative to the cells. Appends a line per run to OUTPUT_FOLDER/dense.csv, skips
