@@ -15,8 +15,6 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 // m, up to which this volume (m^3, with its pores) fills the room that obstacles leave: A h - O(h).
 double filled_height(double volume, const analysis::VolumeBelow& below) {
   const auto room = [&](std::size_t k) {
@@ -27,6 +25,12 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
   const double here = room(k) - room(k - 1), left = volume - room(k - 1);
   return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
 }
+
+// How many of bed and top hold the flow.
+int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
+
+// m, of a depth (m): from the bed up to where the top begins to hold the flow.
+double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
 
 double settled_height(const Case& c, const Obstacles& obstacles) {
   const PeriodicBox box = grain_box(c);
@@ -44,7 +48,7 @@ double settled_height(const Case& c, const Obstacles& obstacles) {
 }  // namespace
 
 FlowNumbers flow_numbers(const Case& c) {
-  FlowNumbers flow{nothing, nothing, nothing, nothing, 0, nothing, nothing, nothing, nothing, nothing, nothing};
+  FlowNumbers flow;
   if (!has_fluid(c) || c.grains.empty()) return flow;
   const Vec3 gravity = gravity_vector(c.gravity);
   const ReferenceGrain grain = reference_grain(c);
@@ -59,8 +63,9 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.depth = c.domain.size.z() - flow.bed_height;
   if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity) return flow;
   flow.side_walls = side_walls(c);
+  flow.top_drags = c.domain.faces[top].drags();
   flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
-  flow.shields_depth = gravity.x() * flow.depth / (excess * g * d);
+  flow.shields_depth = gravity.x() * held_by_the_bed(c, flow.depth) / (excess * g * d);
   flow.shields_hydraulic = gravity.x() * flow.hydraulic_radius / (excess * g * d);
   flow.friction_velocity = std::sqrt(gravity.x() * flow.hydraulic_radius);
   flow.particle_reynolds = flow.friction_velocity * d / c.fluid.kinematic_viscosity;
@@ -89,8 +94,12 @@ bool drives_flow(const Case& c, int axis) {
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
 
 double hydraulic_radius(const Case& c, double depth) {
-  const int walls = side_walls(c);
-  return walls == 0 ? depth : thalweg::hydraulic_radius(depth, c.domain.size.y(), walls);
+  return thalweg::hydraulic_radius(held_by_the_bed(c, depth), c.domain.size.y(), side_walls(c));
+}
+
+double depth_of(const Case& c, double hydraulic_radius) {
+  const double width = c.domain.size.y(), left = width - side_walls(c) * hydraulic_radius;
+  return left > 0.0 ? surfaces(c) * hydraulic_radius * width / left : std::numeric_limits<double>::infinity();
 }
 
 double settled_fraction(const Case& c) {

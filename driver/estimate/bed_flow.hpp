@@ -4,6 +4,8 @@
 
 #include "driver/case/case.hpp"
 
+#include <limits>
+
 namespace thalweg::driver {
 
 // Grains heavier than the fluid by less than this fraction of its density make no bed: that is rounding.
@@ -11,20 +13,23 @@ inline constexpr double neutral_density = 1e-6;
 
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
 // between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
-// gravity along the bed, g times the sine of its angle. Not a number where a case lacks what a number needs: without a
-// slope down along x, which is periodic, there is no Shields number.
+// gravity along the bed, g times the sine of its angle. Under a top that drags, H is half the depth: what lies above
+// the middle weighs on the top. Not a number where a case lacks what a number needs: without a slope down along x,
+// which is periodic, there is no Shields number.
 struct FlowNumbers {
-  double slope;              // tangent of the bed's angle
-  double bed_height;         // m: the grains settled at settled_fraction()
-  double depth;              // m: from there to the top
-  double hydraulic_radius;   // m: H W/(n H + W) beside n side walls
-  int side_walls;            // n, 0 to 2
-  double shields_depth;      // tau* of the depth-slope product
-  double shields_hydraulic;  // tau* of the hydraulic radius
-  double friction_velocity;  // m/s, of shields_hydraulic
-  double particle_reynolds;  // u_tau d / nu
-  double galileo;            // sqrt((s - 1) g d^3) / nu
-  double density_ratio;      // s
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double slope = unknown;              // tangent of the bed's angle
+  double bed_height = unknown;         // m: the grains settled at settled_fraction()
+  double depth = unknown;              // m: from there to the top
+  double hydraulic_radius = unknown;   // m: H W/(n H + W) beside n side walls
+  int side_walls = 0;                  // n, 0 to 2
+  bool top_drags = false;              // and takes half of the stress
+  double shields_depth = unknown;      // tau* of the depth-slope product
+  double shields_hydraulic = unknown;  // tau* of the hydraulic radius
+  double friction_velocity = unknown;  // m/s, of shields_hydraulic
+  double particle_reynolds = unknown;  // u_tau d / nu
+  double galileo = unknown;            // sqrt((s - 1) g d^3) / nu
+  double density_ratio = unknown;      // s
 };
 FlowNumbers flow_numbers(const Case& c);
 
@@ -47,8 +52,11 @@ bool drives_flow(const Case& c, int axis);
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
 
-// m, of a flow of this depth (m): H W/(n H + W) beside n such side walls.
+// m, of a flow of this depth (m): H W/(n H + W) beside n such side walls, with half the depth under a top that drags.
 double hydraulic_radius(const Case& c, double depth);
+
+// m, of the flow that has this hydraulic radius (m); infinite where none is so deep.
+double depth_of(const Case& c, double hydraulic_radius);
 
 // Solid fraction of a settled bed: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between side walls closer
 // than three diameters, as of the 969 grains in the flume of Zhang et al. 2022, 18 diameters high.

@@ -1,5 +1,6 @@
 #include "driver/estimate/flow_estimate.hpp"
 
+#include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/laminar_channel.hpp"
@@ -50,7 +51,9 @@ Channel channel_of(const Case& c) {
   channel.half_width = walls == 0 ? infinite : width / walls;
   channel.roughness = largest_size(c) / roughness_a_diameter;
   channel.viscosity = c.fluid.kinematic_viscosity;
-  channel.radius = surfaces > 0 ? hydraulic_radius(c, channel.reach) : walls > 0 ? width / walls : channel.depth;
+  channel.radius = surfaces > 0 ? thalweg::hydraulic_radius(channel.reach, width, walls)
+                   : walls > 0  ? width / walls
+                                : channel.depth;
   return channel;
 }
 

@@ -94,16 +94,18 @@ void make_bed(Case& c, const io::YamlDocument& document, bool height_follows, co
   fill_in_surfaces(c, document, ranks);
 }
 
-// m, of the water that has the Shields number on the slope of the case: H from R = H W/(n H + W).
+// m, of the water that has the Shields number on the slope of the case.
 double depth_for(const Case& c, double stress_height, const io::YamlDocument& document) {
-  const double radius = stress_height / std::sin(std::atan(*c.gravity.slope)), width = c.domain.size.y();
-  const int walls = side_walls(c);
-  if (walls * radius >= width)
+  const double radius = stress_height / std::sin(std::atan(*c.gravity.slope));
+  const double depth = depth_of(c, radius);
+  if (!std::isfinite(depth)) {
+    const double width = c.domain.size.y(), largest = width / side_walls(c);
     throw document.error("flow.shields_number",
                          fmt::format("on a slope of {:g} between side walls {:g} m apart it stays below {:.3g} however "
                                      "deep the water; give a smaller number or a steeper gravity.slope",
-                                     *c.gravity.slope, width, *c.flow->shields_number * width / (walls * radius)));
-  return radius * width / (width - walls * radius);
+                                     *c.gravity.slope, width, *c.flow->shields_number * largest / radius));
+  }
+  return depth;
 }
 
 double slope_of(const Case& c, double stress_height, double depth, const io::YamlDocument& document) {

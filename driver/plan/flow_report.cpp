@@ -53,7 +53,8 @@ std::string slope_text(const FlowNumbers& flow, double shields) {
 }
 
 void add_slope(const FlowNumbers& flow, Lines& lines) {
-  lines.push_back(fmt::format("Shields    {:.4g} from depth and slope", flow.shields_depth) +
+  lines.push_back(fmt::format("Shields    {:.4g} from {} and slope", flow.shields_depth,
+                              flow.top_drags ? "half the depth (the top holds the other half)" : "depth") +
                   (flow.side_walls > 0 ? fmt::format("; {:.4g} from the hydraulic radius between the side walls",
                                                      flow.shields_hydraulic)
                                        : ""));

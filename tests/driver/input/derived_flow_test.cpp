@@ -58,6 +58,24 @@ TEST(DerivedFlow, SlopeAndHeightFollowFromShieldsNumberAndDepth) {
       }
 }
 
+// Between bed and lid the stress falls linearly to nothing half way up: each holds half of the water, tau* = g
+// sin(alpha) R/((s - 1) g d) with R = h W/(n h + W) of the half h.
+TEST(DerivedFlow, ALidHoldsHalfOfTheFlow) {
+  for (const std::string y : {"free_slip", "law_of_the_wall"}) {
+    const std::string lid = "domain.boundaries={x: periodic, y: " + y + ", bottom: no_slip, top: no_slip}";
+    const int walls = y == "free_slip" ? 0 : 2;
+    const Case c = read({lid});
+    const double half = 0.5 * (c.domain.size.z() - bed);
+    EXPECT_NEAR(half, 0.015, 0.25 * c.domain.spacing * (1.0 + 1e-6));
+    EXPECT_NEAR(shields_number(c, half, walls), 0.05, 5e-7);
+    EXPECT_NEAR(flow_numbers(c).shields_hydraulic, 0.05, 5e-7);
+    const Case deep = read({lid, "flow.depth=null", "gravity.slope=0.1"});
+    const double depth = deep.domain.size.z() - bed, half_a_cell = 0.5 * c.domain.spacing;
+    EXPECT_LE(shields_number(deep, 0.5 * (depth - half_a_cell), walls), 0.05);
+    EXPECT_GE(shields_number(deep, 0.5 * (depth + half_a_cell), walls), 0.05);
+  }
+}
+
 TEST(DerivedFlow, TheSlopeFollowsInABoxOfGivenHeight) {
   const Case c = read({"domain.size=[0.0594, 0.010725, 0.0825]", "flow.depth=null"});
   EXPECT_NEAR(shields_number(c, 0.0825 - bed, 2), 0.05, 5e-7);
