@@ -8,16 +8,35 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace thalweg::analysis {
 
-Tracks::Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps)
+namespace {
+
+constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+
+bool is_there(const GrainRecord& record) { return record.id >= 0; }
+
+Look look_at(const GrainRecord& record) { return {record[GrainRecord::position], record[GrainRecord::velocity]}; }
+
+double speed_of(const GrainRecord& record) { return is_there(record) ? record[GrainRecord::velocity].norm() : 0.0; }
+
+}  // namespace
+
+Tracks::Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps,
+               std::optional<double> diameter)
     : communicator_(communicator),
       grains_(std::move(grains)),
       every_(every),
       clumps_(clumps),
+      diameter_(diameter),
       since_(GrainRecord::quantities) {}
+
+std::size_t Tracks::index_of(GlobalId id) const {
+  return static_cast<std::size_t>(std::lower_bound(grains_.begin(), grains_.end(), id) - grains_.begin());
+}
 
 void Tracks::observe(const Snapshot& snapshot) {
   if (snapshot.step <= seen_step_) return;
@@ -28,11 +47,9 @@ void Tracks::observe(const Snapshot& snapshot) {
     if (std::binary_search(grains_.begin(), grains_.end(), snapshot.grains.id[n]))
       records.push_back(record_of(snapshot.grains, n));
   records = exchange_rows(communicator_, records, std::vector<int>(records.size(), 0));
-  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   if (rank_of(communicator_) == 0) {
-    if (!last_.empty())
-      for (std::size_t n = 0; n < records.size(); ++n)
-        go_on(records[n], last_[n], snapshot.time - last_time_, snapshot.decomposition->box());
+    records = in_order(records);
+    if (!last_.empty()) go_on(records, snapshot.time - last_time_, snapshot.decomposition->box());
     times_.push_back(snapshot.time);
     for (const GrainRecord& record : records)
       for (std::size_t v = 0; v < record.values.size(); ++v) since_[v / 3].push_back(record.values[v]);
@@ -40,6 +57,14 @@ void Tracks::observe(const Snapshot& snapshot) {
   }
   last_time_ = snapshot.time;
   if (clumps_) record_orientations(snapshot);
+}
+
+std::vector<GrainRecord> Tracks::in_order(const std::vector<GrainRecord>& records) const {
+  GrainRecord absent;
+  absent.values.fill(nowhere);
+  std::vector<GrainRecord> rows(grains_.size(), absent);
+  for (const GrainRecord& record : records) rows[index_of(record.id)] = record;
+  return rows;
 }
 
 void Tracks::record_orientations(const Snapshot& snapshot) {
@@ -50,26 +75,31 @@ void Tracks::record_orientations(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   std::map<GlobalId, std::array<double, 4>> of_clump;
   for (const ClumpState& clump : grains.clumps) of_clump[clump.id] = clump.orientation;
-  std::vector<Turned> rows;
+  std::vector<Turned> turned;
   for (std::size_t n = 0; n < grains.id.size(); ++n) {
     if (!std::binary_search(grains_.begin(), grains_.end(), grains.id[n])) continue;
-    rows.push_back({grains.id[n], {1.0, 0.0, 0.0, 0.0}});
-    if (grains.is_member(n)) rows.back().orientation = of_clump.at(grains.clump[n]);
+    turned.push_back({grains.id[n], {1.0, 0.0, 0.0, 0.0}});
+    if (grains.is_member(n)) turned.back().orientation = of_clump.at(grains.clump[n]);
   }
-  rows = exchange_rows(communicator_, rows, std::vector<int>(rows.size(), 0));
-  std::sort(rows.begin(), rows.end(), [](const Turned& a, const Turned& b) { return a.id < b.id; });
-  for (const Turned& row : rows)
-    orientations_.insert(orientations_.end(), row.orientation.begin(), row.orientation.end());
+  turned = exchange_rows(communicator_, turned, std::vector<int>(turned.size(), 0));
+  if (rank_of(communicator_) != 0) return;
+  std::vector<std::array<double, 4>> rows(grains_.size(), {nowhere, nowhere, nowhere, nowhere});
+  for (const Turned& row : turned) rows[index_of(row.id)] = row.orientation;
+  for (const auto& row : rows) orientations_.insert(orientations_.end(), row.begin(), row.end());
 }
 
-void Tracks::go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const {
-  Vec3 position = record[GrainRecord::position];
-  const Vec3 mean_velocity = 0.5 * (last[GrainRecord::velocity] + record[GrainRecord::velocity]);
-  const Vec3 expected = last[GrainRecord::position] + mean_velocity * interval;
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.periodic[static_cast<std::size_t>(axis)])
-      position[axis] += box.size[axis] * std::round((expected[axis] - position[axis]) / box.size[axis]);
-  record.set(GrainRecord::position, position);
+// duration: s, since the latest measurement.
+void Tracks::go_on(std::vector<GrainRecord>& records, double duration, const PeriodicBox& box) const {
+  double fastest = 0.0;
+  for (std::size_t n = 0; n < records.size(); ++n)
+    fastest = std::max({fastest, speed_of(records[n]), speed_of(last_[n])});
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    if (!is_there(records[n]) || !is_there(last_[n])) continue;
+    const Look now = look_at(records[n]);
+    const Way gone = way_between(look_at(last_[n]), now, duration, box);
+    if (diameter_ && gone.away > farthest_away(*diameter_, fastest, duration)) continue;
+    records[n].set(GrainRecord::position, now.position + gone.boxes.cwiseProduct(box.size));
+  }
 }
 
 std::vector<Diagnostic> Tracks::results() const {
@@ -127,6 +157,7 @@ bool Tracks::load(ArchiveReader& archive) {
   if (rank_of(communicator_) != 0) return true;
   last_.assign(rows, {});
   for (std::size_t n = 0; n < last_.size(); ++n) {
+    if (std::isnan(values[n * columns])) continue;  // it was not there
     last_[n].id = grains_[n];
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(n * columns), columns, last_[n].values.begin());
   }
@@ -165,7 +196,9 @@ std::unique_ptr<Observer> make_observer(const TracksKeys& keys, const RunContext
   std::sort(ids.begin(), ids.end());
   if (ids.empty())
     for (GlobalId id = 0; id < run.grains->count(); id += keys.one_in) ids.push_back(id);
-  return std::make_unique<Tracks>(system.communicator, std::move(ids), keys.every, run.grains->any_clumps());
+  return std::make_unique<Tracks>(
+      system.communicator, std::move(ids), keys.every, run.grains->any_clumps(),
+      run.grains->recirculation ? std::optional(run.grains->reference_diameter) : std::nullopt);
 }
 
 // Every rank knows the ids; the first has the records.

@@ -1,17 +1,18 @@
 // The tracks of chosen grains: where they are, how they move and turn, and what acts on them, at short intervals.
 //
-// Positions continue across the faces of a periodic box: from one measurement to the next a grain has gone to the image
-// that lies nearest to where the mean of its two velocities would have taken it, which is right as long as its speed
-// changes by less than a box in an interval. A member of a clump is recorded as the sphere it is, with the orientation
-// of the clump.
+// Positions continue across the faces of a periodic box (way_between.hpp). A grain that has left by a sink has no
+// numbers, and begins anew inside the box where it comes in again. A member of a clump is recorded as the sphere it is,
+// with the orientation of the clump.
 #pragma once
 
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/tools/grain_record.hpp"
+#include "analysis/tools/way_between.hpp"
 #include "core/geometry/periodic_box.hpp"
 
 #include <mpi.h>
 
+#include <optional>
 #include <vector>
 
 namespace thalweg::analysis {
@@ -34,8 +35,10 @@ ObserverMemory memory_of(const TracksKeys& keys, const RunContext& run, const Ru
 
 class Tracks : public Observer {
 public:
-  // grains: ids, ascending, each once. every: s, between measurements. clumps: orientations are recorded.
-  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps = false);
+  // grains: ids, ascending, each once. every: s, between measurements. clumps: orientations are recorded. diameter: m,
+  // the reference one, where grains may be taken out of the box and put in elsewhere from one measurement to the next.
+  Tracks(MPI_Comm communicator, std::vector<GlobalId> grains, double every, bool clumps = false,
+         std::optional<double> diameter = {});
 
   std::string name() const override { return "tracks"; }
   double every() const override { return every_; }
@@ -48,7 +51,7 @@ public:
 
   // Fixed: id. Rows: time (s), [time] and of each grain in the order of ids, [time, grain, axis]: those of GrainRecord;
   // with clumps orientation, [time, grain, component], the unit quaternion w, x, y, z that turns vectors from the frame
-  // of the principal axes into space, 1, 0, 0, 0 of spheres.
+  // of the principal axes into space, 1, 0, 0, 0 of spheres. Not a number of a grain that is not there.
   bool has_records() const override { return true; }
   Records take_records() override;
 
@@ -57,12 +60,16 @@ public:
 
 private:
   void record_orientations(const Snapshot& snapshot);
-  void go_on(GrainRecord& record, const GrainRecord& last, double interval, const PeriodicBox& box) const;
+  // Rows of grains in the order of grains_, with numbers of those that are there. On rank 0.
+  std::vector<GrainRecord> in_order(const std::vector<GrainRecord>& records) const;
+  void go_on(std::vector<GrainRecord>& records, double duration, const PeriodicBox& box) const;
+  std::size_t index_of(GlobalId id) const;
 
   MPI_Comm communicator_;
   std::vector<GlobalId> grains_;
   double every_;
   bool clumps_;
+  std::optional<double> diameter_;
   std::int64_t seen_step_ = -1, measurements_ = 0;
   double last_time_ = 0.0;                  // s
   std::vector<GrainRecord> last_;           // on rank 0, at the latest measurement

@@ -19,14 +19,16 @@ constexpr int velocity_bins = 200;
 
 }  // namespace
 
-TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys)
+TransportRate::TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys,
+                             bool recirculation)
     : MeanObserver(communicator, TransportRateKeys::section, keys.from, keys.every),
       scales_(scales),
       moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
       velocities_{Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins),
                   Histogram::linear(slowest * scales.fall_speed(), fastest * scales.fall_speed(), velocity_bins)},
-      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), moving_speed_) {}
+      hops_(communicator, scales.grain_diameter, scales.grain_diameter / scales.fall_speed(), moving_speed_,
+            recirculation) {}
 
 bool TransportRate::measure(const Snapshot& snapshot, bool counts) {
   const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
@@ -215,7 +217,7 @@ void check(const TransportRateKeys&, const RunContext& run) { require_grains(run
 
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
-  return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys);
+  return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys, run.grains->recirculation);
 }
 
 ObserverMemory memory_of(const TransportRateKeys&, const RunContext&, const RunSize& size) {

@@ -45,7 +45,8 @@ ObserverMemory memory_of(const TransportRateKeys& keys, const RunContext& run, c
 
 class TransportRate : public MeanObserver {
 public:
-  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys);
+  TransportRate(MPI_Comm communicator, const TransportScales& scales, const TransportRateKeys& keys,
+                bool recirculation = false);
 
   // q_s (m^2/s), q_star (1; only in a fluid), moving_grains (1: faster than moving_speed), moving_share (1: of all
   // free grains), activity (m).

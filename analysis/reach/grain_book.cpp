@@ -29,7 +29,8 @@ GrainBook::Page GrainBook::look(double time, const PeriodicBox& box, GlobalId en
   }
   fastest = max_over_ranks(communicator_, fastest);
   const double duration = time - last_time_;
-  const Interval interval{time, duration, diameter_ + 2.0 * std::max(fastest, last_speed_) * duration, first, box};
+  const Interval interval{time, duration, farthest_away(diameter_, std::max(fastest, last_speed_), duration), first,
+                          box};
 
   Page page;
   std::vector<char> here(memory_.size(), 0);
@@ -49,12 +50,13 @@ GrainBook::Page GrainBook::look(double time, const PeriodicBox& box, GlobalId en
 }
 
 void GrainBook::follow(Memory& memory, const Sighting& seen, const Interval& interval, Page& page) const {
-  Memory now{absent, {seen.x, seen.y, seen.z}, {seen.v_x, seen.v_y, seen.v_z}, seen.volume, memory.since};
-  now.state = now.velocity.squaredNorm() > moving_speed_ * moving_speed_ ? moving : at_rest;
+  const Look look{{seen.x, seen.y, seen.z}, {seen.v_x, seen.v_y, seen.v_z}};
+  Memory now{absent, look, seen.volume, memory.since};
+  now.state = look.velocity.squaredNorm() > moving_speed_ * moving_speed_ ? moving : at_rest;
   const std::int64_t bin = sections_.bin_of(seen.x);
   const std::optional<std::int64_t> boxes = memory.state == absent ? std::nullopt : boxes_gone(memory, now, interval);
   if (boxes) {
-    const std::int64_t bin_before = sections_.bin_of(memory.position.x());
+    const std::int64_t bin_before = sections_.bin_of(memory.latest.position.x());
     cross(bin_before, bin + *boxes * sections_.bins, seen.volume, page);
     if (memory.state == at_rest && now.state == moving)
       page.entries.push_back({Passage::entrained, bin_before, seen.volume});
@@ -71,17 +73,9 @@ void GrainBook::follow(Memory& memory, const Sighting& seen, const Interval& int
 
 std::optional<std::int64_t> GrainBook::boxes_gone(const Memory& before, const Memory& now,
                                                   const Interval& interval) const {
-  // By how far it lies from where its velocities would have taken it.
-  Vec3 off = now.position - before.position - 0.5 * interval.duration * (before.velocity + now.velocity);
-  std::int64_t boxes_along_x = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!interval.box.periodic[static_cast<std::size_t>(axis)]) continue;
-    const double boxes = std::round(off[axis] / interval.box.size[axis]);
-    off[axis] -= boxes * interval.box.size[axis];
-    if (axis == 0) boxes_along_x = -std::llround(boxes);
-  }
-  if (recirculation_ && off.norm() > interval.reach) return std::nullopt;
-  return boxes_along_x;
+  const Way gone = way_between(before.latest, now.latest, interval.duration, interval.box);
+  if (recirculation_ && gone.away > interval.farthest) return std::nullopt;
+  return std::llround(gone.boxes.x());
 }
 
 // from, to: bins, the second of them beyond the box where a grain has gone round.
@@ -92,7 +86,7 @@ void GrainBook::cross(std::int64_t from, std::int64_t to, double volume, Page& p
 }
 
 void GrainBook::leave(const Memory& memory, double time, Page& page) const {
-  page.entries.push_back({Passage::left, sections_.bin_of(memory.position.x()), memory.volume});
+  page.entries.push_back({Passage::left, sections_.bin_of(memory.latest.position.x()), memory.volume});
   if (memory.since >= 0.0) page.stays.push_back(time - memory.since);
 }
 
@@ -102,8 +96,9 @@ void GrainBook::save(ArchiveWriter& archive, const std::string& group) const {
   if (!homes_) return;
   std::vector<double> rows;
   for (const Memory& m : memory_)
-    rows.insert(rows.end(), {static_cast<double>(m.state), m.position.x(), m.position.y(), m.position.z(),
-                             m.velocity.x(), m.velocity.y(), m.velocity.z(), m.volume, m.since});
+    rows.insert(rows.end(),
+                {static_cast<double>(m.state), m.latest.position.x(), m.latest.position.y(), m.latest.position.z(),
+                 m.latest.velocity.x(), m.latest.velocity.y(), m.latest.velocity.z(), m.volume, m.since});
   homes_->write(archive, group + "/grains", std::move(rows), columns);
 }
 
@@ -120,8 +115,7 @@ void GrainBook::load(ArchiveReader& archive, const std::string& group, std::int6
     const bool known = row[0] == 0.0 || row[0] == 1.0 || row[0] == 2.0;
     damaged |= !known || !std::all_of(row, row + columns, [](double value) { return std::isfinite(value); });
     memory_[m] = {known ? static_cast<State>(static_cast<int>(row[0])) : absent,
-                  {row[1], row[2], row[3]},
-                  {row[4], row[5], row[6]},
+                  {{row[1], row[2], row[3]}, {row[4], row[5], row[6]}},
                   row[7],
                   row[8]};
   }

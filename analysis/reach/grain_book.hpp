@@ -1,15 +1,10 @@
 // The book of the grains of a reach: what each has done since the look before.
 //
-// A grain crosses the sections between the places of its centre at two looks. Through a periodic face it is taken to
-// have gone to that image of its new place which lies nearest to where the mean of its two velocities would have taken
-// it, as hops.hpp has it. A grain that is seen for the first time, or again, has arrived; one that is no longer seen
-// has left, where it was seen last. Where grains recirculate, one that lies farther from where its velocities would
-// have taken it than
-//
-//   d + 2 v dt      d reference diameter, v the largest speed of any grain at both looks, dt the time between them
-//
-// has left and arrived anew. What a grain does between its last look and a sink, or its entrance and the first look at
-// it, is not seen; the balance of each bin closes all the same.
+// A grain crosses the sections between the places of its centre at two looks (way_between.hpp). A grain that is seen
+// for the first time, or again, has arrived; one that is no longer seen has left, where it was seen last. Where grains
+// recirculate, one that is farther away than farthest_away() from where its velocities would have
+// taken it has left and arrived anew. What a grain does between its last look and a sink, or its entrance and the first
+// look at it, is not seen; the balance of each bin closes all the same.
 //
 // A clump is one grain. The memory of a grain is at the home of its id (distribution_by_id.hpp).
 #pragma once
@@ -17,6 +12,7 @@
 #include "analysis/reach/sections.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/hops.hpp"
+#include "analysis/tools/way_between.hpp"
 #include "core/geometry/periodic_box.hpp"
 
 #include <mpi.h>
@@ -68,9 +64,9 @@ private:
   // Memory of a body, at its home.
   struct Memory {
     State state = absent;
-    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  // m, m/s: at the latest look
-    double volume = 0.0;                                    // m^3
-    double since = 0.0;                                     // s, of its arrival; negative: it was there at first
+    Look latest = {};
+    double volume = 0.0;  // m^3
+    double since = 0.0;   // s, of its arrival; negative: it was there at first
   };
   static constexpr std::size_t columns = 9;
 
@@ -81,7 +77,7 @@ private:
   // What to compare the places of two looks by.
   struct Interval {
     double time, duration;  // s
-    double reach;           // m, from where its velocities would have taken a grain
+    double farthest;        // m, that a grain can be away from where its velocities would have taken it
     bool first;
     const PeriodicBox& box;
   };

@@ -28,9 +28,11 @@ std::vector<Body> free_bodies_of(const GrainView& grains) {
   return bodies;
 }
 
-Hops::Hops(MPI_Comm communicator, double length, double time, double moving_speed)
+Hops::Hops(MPI_Comm communicator, double length, double time, double moving_speed, bool recirculation)
     : communicator_(communicator),
+      diameter_(length),
       moving_speed_(moving_speed),
+      recirculation_(recirculation),
       lengths_(Histogram::geometric(shortest * length, longest * length, bins)),
       times_(Histogram::geometric(shortest * time, longest * time, bins)) {}
 
@@ -39,45 +41,48 @@ void Hops::observe(double time, const PeriodicBox& box, GlobalId id_count, const
   if (!homes_) homes_.emplace(communicator_, id_count);
   homes_->grow(id_count);
   memory_.resize(homes_->size());
+  double fastest = 0.0;
   std::vector<Sighting> sightings;
   for (const Body& body : bodies) {
-    const bool moves = body.velocity.squaredNorm() > moving_speed_ * moving_speed_;
-    sightings.push_back({body.id, body.position.x(), body.velocity.x(), moves ? 1.0 : 0.0});
+    const Vec3 &x = body.position, &v = body.velocity;
+    sightings.push_back({body.id, x.x(), x.y(), x.z(), v.x(), v.y(), v.z()});
+    fastest = std::max(fastest, v.norm());
   }
+  fastest = max_over_ranks(communicator_, fastest);
+  const double duration = time - last_time_;
+  const Interval interval{time, duration, farthest_away(diameter_, std::max(fastest, last_speed_), duration), box,
+                          counts};
   std::vector<double> ended;
-  for (const Sighting& seen : homes_->bring_home(sightings))
-    follow(memory_[homes_->location_of(seen.id)], seen, time, box, counts, ended);
+  std::vector<Memory> latest(memory_.size());  // unseen, those that are no longer there
+  for (const Sighting& seen : homes_->bring_home(sightings)) {
+    const std::size_t place = homes_->location_of(seen.id);
+    latest[place] = memory_[place];
+    follow(latest[place], seen, interval, ended);
+  }
+  memory_ = std::move(latest);
   last_time_ = time;
+  last_speed_ = fastest;
   take_in(ended);
 }
 
-void Hops::follow(Memory& memory, const Sighting& seen, double time, const PeriodicBox& box, bool counts,
-                  std::vector<double>& ended) const {
-  const bool moves = seen.moves != 0.0;
-  double way = 0.0;
-  if (memory.phase != unseen) {
-    const double expected = 0.5 * (memory.v_x + seen.v_x) * (time - last_time_);
-    way = seen.x - memory.x;
-    const double boxes = std::round((way - expected) / box.size[0]);
-    if (box.periodic[0])
-      way -= box.size[0] * boxes;
-    else if (boxes != 0.0)
-      memory.phase = unseen;  // it has left by a sink and come in again
-  }
+void Hops::follow(Memory& memory, const Sighting& seen, const Interval& interval, std::vector<double>& ended) const {
+  const Look now{{seen.x, seen.y, seen.z}, {seen.v_x, seen.v_y, seen.v_z}};
+  const bool moves = now.velocity.squaredNorm() > moving_speed_ * moving_speed_;
+  const Way gone = way_between(memory.latest, now, interval.duration, interval.box);
+  if (recirculation_ && gone.away > interval.farthest) memory.phase = unseen;
   const bool known = memory.phase != unseen;
   if (memory.phase == hopping || memory.phase == hopping_uncounted) {
-    memory.length += way;
-    if (!moves && memory.phase == hopping) ended.insert(ended.end(), {memory.length, time - memory.begin});
+    memory.length += gone.way.x();
+    if (!moves && memory.phase == hopping) ended.insert(ended.end(), {memory.length, interval.time - memory.begin});
     if (!moves) memory.phase = at_rest;
   } else if (moves) {
-    memory.phase = known && counts ? hopping : hopping_uncounted;
-    memory.begin = time;
-    memory.length = way;
+    memory.phase = known && interval.counts ? hopping : hopping_uncounted;
+    memory.begin = interval.time;
+    memory.length = known ? gone.way.x() : 0.0;
   } else {
     memory.phase = at_rest;
   }
-  memory.x = seen.x;
-  memory.v_x = seen.v_x;
+  memory.latest = now;
 }
 
 // ended: length and time of each hop that has ended at a home here.
@@ -124,6 +129,7 @@ std::vector<Profile> Hops::profiles() const {
 
 void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   archive.attribute(group + "/hops_last_time", last_time_);
+  archive.attribute(group + "/hops_largest_speed", last_speed_);
   archive.attribute(group + "/hops_sum_of_lengths", sum_of_lengths_);
   archive.attribute(group + "/hops_sum_of_times", sum_of_times_);
   std::vector<std::int64_t> counts(lengths_.counts().begin(), lengths_.counts().end());
@@ -132,17 +138,20 @@ void Hops::save(ArchiveWriter& archive, const std::string& group) const {
   if (!homes_) return;
   std::vector<double> rows;
   for (const Memory& m : memory_)
-    rows.insert(rows.end(), {static_cast<double>(m.phase), m.x, m.v_x, m.begin, m.length});
-  homes_->write(archive, group + "/hops_of_grains", std::move(rows), columns);
+    rows.insert(rows.end(),
+                {static_cast<double>(m.phase), m.latest.position.x(), m.latest.position.y(), m.latest.position.z(),
+                 m.latest.velocity.x(), m.latest.velocity.y(), m.latest.velocity.z(), m.begin, m.length});
+  homes_->write(archive, group + "/hops_of_bodies", std::move(rows), columns);
 }
 
 void Hops::load(ArchiveReader& archive, const std::string& group, std::int64_t bodies) {
   const std::size_t cells = lengths_.counts().size();
-  const std::string grains = group + "/hops_of_grains";
-  if (!archive.has(group + "/hops_last_time") && !archive.has(grains)) return;
+  const std::string grains = group + "/hops_of_bodies";
+  if (!archive.has(group + "/hops_largest_speed") && !archive.has(grains)) return;
   const auto counts = read_whole_if_alike<std::int64_t>(archive, group + "/hops_counts", {2 * cells});
   if (!counts || (bodies == 0 && !archive.has(grains))) return;
   last_time_ = archive.real_attribute(group + "/hops_last_time");
+  last_speed_ = archive.real_attribute(group + "/hops_largest_speed");
   sum_of_lengths_ = archive.real_attribute(group + "/hops_sum_of_lengths");
   sum_of_times_ = archive.real_attribute(group + "/hops_sum_of_times");
   std::copy(counts->begin(), counts->begin() + static_cast<std::ptrdiff_t>(cells), lengths_.counts().begin());
@@ -152,7 +161,10 @@ void Hops::load(ArchiveReader& archive, const std::string& group, std::int64_t b
   const auto rows = homes_->read<double>(archive, grains, columns);
   for (std::size_t m = 0; m < memory_.size(); ++m) {
     const double* row = rows.data() + m * columns;
-    memory_[m] = {static_cast<Phase>(static_cast<int>(row[0])), row[1], row[2], row[3], row[4]};
+    memory_[m] = {static_cast<Phase>(static_cast<int>(row[0])),
+                  {{row[1], row[2], row[3]}, {row[4], row[5], row[6]}},
+                  row[7],
+                  row[8]};
   }
 }
 

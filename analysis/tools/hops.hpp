@@ -7,14 +7,15 @@
 // for what a grain creeps below the threshold. Hops that were under way when measuring began are not counted, nor those
 // that have not ended.
 //
-// Between two measurements a grain is taken to have gone to that periodic image of its new place which lies nearest to
-// where the mean of its two velocities would have taken it. A grain that has gone by a sink and come in again begins
-// anew.
+// A grain that has gone by a sink and come in again begins anew: one that a measurement does not find, and where grains
+// recirculate, one that is farther away than farthest_away() from where its velocities would have taken it
+// (way_between.hpp).
 #pragma once
 
 #include "analysis/observer/observer.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/histogram.hpp"
+#include "analysis/tools/way_between.hpp"
 #include "core/geometry/periodic_box.hpp"
 
 #include <mpi.h>
@@ -36,9 +37,10 @@ std::vector<Body> free_bodies_of(const GrainView& grains);
 
 class Hops {
 public:
-  // length, time: the units of the histograms' edges (m, s), e.g. a diameter and the time to fall by it.
-  // moving_speed: the threshold, m/s.
-  Hops(MPI_Comm communicator, double length, double time, double moving_speed);
+  // length, time: the units of the histograms' edges (m, s), a diameter and e.g. the time to fall by it.
+  // moving_speed: the threshold, m/s. recirculation: grains may be taken out of the box and put in elsewhere from one
+  // measurement to the next.
+  Hops(MPI_Comm communicator, double length, double time, double moving_speed, bool recirculation = false);
 
   static constexpr double bytes_per_id() { return sizeof(Memory); }  // of what it keeps
 
@@ -63,25 +65,32 @@ private:
   // Memory of a body, at its home.
   struct Memory {
     Phase phase = unseen;
-    double x = 0.0, v_x = 0.0;  // m, m/s: at the latest measurement
-    double begin = 0.0;         // s, of the hop
-    double length = 0.0;        // m, so far
+    Look latest = {};
+    double begin = 0.0;   // s, of the hop
+    double length = 0.0;  // m, so far
   };
-  static constexpr std::size_t columns = 5;
+  static constexpr std::size_t columns = 9;
 
   struct Sighting {
     GlobalId id;
-    double x, v_x, moves;
+    double x, y, z, v_x, v_y, v_z;
   };
-  void follow(Memory& memory, const Sighting& seen, double time, const PeriodicBox& box, bool counts,
-              std::vector<double>& ended) const;
+  struct Interval {
+    double time, duration;  // s
+    double farthest;        // m, that a grain can be away from where its velocities would have taken it
+    const PeriodicBox& box;
+    bool counts;
+  };
+  void follow(Memory& memory, const Sighting& seen, const Interval& interval, std::vector<double>& ended) const;
   void take_in(const std::vector<double>& ended);
 
   MPI_Comm communicator_;
-  double moving_speed_;
+  double diameter_, moving_speed_;
+  bool recirculation_;
   std::optional<DistributionById> homes_;             // from the first measurement on
   std::vector<Memory> memory_;                        // of the ids whose home is here
   double last_time_ = 0.0;                            // s, of the latest measurement
+  double last_speed_ = 0.0;                           // m/s, the largest then
   Histogram lengths_, times_;                         // over all ranks, on every rank
   double sum_of_lengths_ = 0.0, sum_of_times_ = 0.0;  // m, s
 };

@@ -57,6 +57,53 @@ TEST(Tracks, GoOnWhereAGrainLeavesTheBox) {
   }
 }
 
+// Grain 1 is away at times 2 to 4 s, and comes in again elsewhere; grain 0 is put elsewhere between two measurements.
+// Neither goes on from where it was, and grain 2 goes round as before.
+TEST(Tracks, OfGrainsThatLeaveAndComeIn) {
+  const auto show = [](Tracks& tracks, std::int64_t step) {
+    const double time = 0.5 * static_cast<double>(step);
+    const auto grain = [time](GlobalId id) -> std::optional<MadeUpGrain> {
+      if (id == 1 && time >= 2.0 && time <= 4.0) return {};
+      const Vec3 elsewhere = id < 2 && time > 4.0 ? Vec3(17.0, 8.0, 4.0) : place(id, time);
+      return MadeUpGrain{.velocity = id == 2 ? Vec3(7.0, -3.0, 0.0) : Vec3(Vec3::Zero()), .position = elsewhere};
+    };
+    tracks.observe(MadeUpGrains(MPI_COMM_WORLD, 3, grain, step).snapshot(time, 0.5));
+  };
+  const std::vector<GlobalId> all{0, 1, 2};
+  Tracks straight(MPI_COMM_WORLD, all, 0.5, true, 1.0), before(MPI_COMM_WORLD, all, 0.5, true, 1.0),
+      tracks(MPI_COMM_WORLD, all, 0.5, true, 1.0);
+  for (std::int64_t step = 0; step < 20; ++step) show(straight, step);
+  for (std::int64_t step = 0; step < 6; ++step) show(before, step);  // a restart while grain 1 is away
+  test::load(tracks, test::saved(before, MPI_COMM_WORLD));
+  for (std::int64_t step = 5; step < 20; ++step) show(tracks, step);
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const Records records = straight.take_records(), rest = tracks.take_records();
+  const Profile& position = named(records.rows, "position");
+  ASSERT_EQ(position.shape, (std::vector<std::uint64_t>{20, 3, 3}));
+  for (std::size_t row = 0; row < 20; ++row) {
+    const double time = 0.5 * static_cast<double>(row);
+    for (const std::size_t id : {0, 1, 2})
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double value = position.values[9 * row + 3 * id + axis];
+        const Vec3 expected = id < 2 && time > 4.0 ? Vec3(17.0, 8.0, 4.0) : place(static_cast<GlobalId>(id), time);
+        if (id == 1 && time >= 2.0 && time <= 4.0)
+          EXPECT_TRUE(std::isnan(value));
+        else
+          EXPECT_NEAR(value, expected[static_cast<Eigen::Index>(axis)], 1e-12);
+      }
+  }
+  const std::vector<double>& orientation = named(records.rows, "orientation").values;
+  ASSERT_EQ(orientation.size(), 240u);
+  EXPECT_EQ(orientation[0], 1.0);
+  EXPECT_TRUE(std::isnan(orientation[12 * 5 + 4]));
+  const std::vector<double>& part = named(rest.rows, "position").values;
+  ASSERT_EQ(part.size(), 14u * 9);
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    const double whole = position.values[position.values.size() - part.size() + n];
+    EXPECT_TRUE(part[n] == whole || (std::isnan(part[n]) && std::isnan(whole)));
+  }
+}
+
 // Grains 1 and 2 are members of a clump, which the last rank owns; a sphere has no orientation but 1, 0, 0, 0.
 TEST(Tracks, OfMembersHaveTheOrientationOfTheirClump) {
   const Decomposition decomposition = made_up_box();

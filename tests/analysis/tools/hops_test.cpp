@@ -79,6 +79,26 @@ TEST(Hops, UnderWayAtTheStartDoNotCount) {
   EXPECT_EQ(value_of(late.results(), "hops"), begun);
 }
 
+// Two grains fall into a sink, come in again downstream and high up and come to rest there: grain 0 is away at 3 and 4,
+// grain 1 is put elsewhere between two measurements. A third, which goes downstream as far at its own speed, hops.
+TEST(Hops, DoNotGoOnThroughASink) {
+  Hops hops(world, 0.1, 0.1, 0.5, true);
+  const Vec3 still = Vec3::Zero(), falls(0.0, 0.0, -1.0);
+  for (int n = 0; n < 9; ++n) {
+    std::vector<Body> bodies;
+    const bool back = n > 4;
+    const Vec3 place(back ? 0.3 : 0.05, 0.5, back ? 0.9 : 0.6 - 0.125 * std::max(0, n - 1));
+    const Vec3 velocity = n > 0 && n < 7 ? falls : still;
+    if (n < 3 || n > 4) bodies.push_back({0, 1.0, place, velocity});
+    bodies.push_back({1, 1.0, place, velocity});
+    bodies.push_back({2, 1.0, Vec3(n < 3 ? 0.05 : 0.3, 0.5, 0.1), n == 2 || n == 3 ? Vec3(2.0, 0.0, 0.0) : still});
+    if (rank_of(world) != n % size_of(world)) bodies.clear();
+    hops.observe(n * interval, box, 3, bodies, true);
+  }
+  EXPECT_EQ(value_of(hops.results(), "hops"), 1.0);
+  EXPECT_NEAR(value_of(hops.results(), "hop_length_mean"), 0.25, 1e-15);
+}
+
 TEST(Hops, HaveTheSameBitsOnAnyNumberOfRanksAndAfterARestart) {
   Hops alone(MPI_COMM_SELF, 0.1, 0.1, 0.5), shared(world, 0.1, 0.1, 0.5), restarted(world, 0.1, 0.1, 0.5);
   test::MemoryArchive half_way;
