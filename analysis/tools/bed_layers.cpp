@@ -34,7 +34,7 @@ BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double windo
 
 BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
   std::vector<double> grains = grains_below(snapshot), obstacles = obstacles_below(snapshot);
-  if (static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count)
+  if (!obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count)
     grains = std::exchange(obstacles, {});
   const VolumeBelow below{grains, thickness_, box_.size.x() * width_, obstacles};
   return {bed_height(below, thin_layers_a_window / 2), bulk_solid_fraction(below)};

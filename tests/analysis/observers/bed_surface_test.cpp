@@ -146,6 +146,15 @@ TEST(BedSurface, LeavesOutASillOfOverlappingSpheres) {
   EXPECT_NEAR(value_of(alone.diagnostics(), "bed_height"), 6.0 * d, 0.08 * d);
 }
 
+// As once all have gone by a sink.
+TEST(BedSurface, OfNoGrainsIsTheFloor) {
+  Spheres spheres(world);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0);
+  surface.observe(spheres.at(0, {}));
+  EXPECT_EQ(value_of(surface.diagnostics(), "bed_height"), 0.0);
+  EXPECT_EQ(value_of(surface.diagnostics(), "flow_depth"), 32.0 * d);
+}
+
 // A fluid that a force drives and whose top takes or gives stress.
 class DrivenFluid final : public FluidSource {
 public:
