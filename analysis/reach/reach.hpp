@@ -109,7 +109,8 @@ private:
   std::int64_t balance_residual() const;
   void add_means(std::vector<Diagnostic>& results) const;
   void add_by_section(std::vector<Profile>& profiles) const;
-  double bed_trend(const CorrelatedMean& level) const;  // m/s
+  double duration_of(const CorrelatedMean& level) const;  // s, of the records that have a level
+  double bed_trend(const CorrelatedMean& level) const;    // m/s
   SavedSettings settings() const;
 
   // Pointers to what is saved and sized when the observer is made.

@@ -30,9 +30,13 @@ double mean_or_unknown(const CorrelatedMean& mean) { return mean.count() > 0 ? m
 
 }  // namespace
 
-double Reach::bed_trend(const CorrelatedMean& level) const {
-  return trend_of(level).drift / (window_ended_ - window_begun_);
+// As if they followed each other: the bed of a bin has no level before it is built up, or once it is gone.
+double Reach::duration_of(const CorrelatedMean& level) const {
+  const double records = static_cast<double>(mean_q_s_.count());
+  return (window_ended_ - window_begun_) * static_cast<double>(level.count()) / records;
 }
+
+double Reach::bed_trend(const CorrelatedMean& level) const { return trend_of(level).drift / duration_of(level); }
 
 void Reach::add_means(std::vector<Diagnostic>& results) const {
   const double duration = window_ended_ - window_begun_, plan = plan_of_bin() * static_cast<double>(sections_.bins);
@@ -47,7 +51,7 @@ void Reach::add_means(std::vector<Diagnostic>& results) const {
   }
   results.push_back({"bed_level_mean", "m", mean_or_unknown(mean_level_)});
   results.push_back({"bed_level_trend", "m/s", bed_trend(mean_level_)});
-  results.push_back({"bed_level_trend_error", "m/s", trend_of(mean_level_).error / duration});
+  results.push_back({"bed_level_trend_error", "m/s", trend_of(mean_level_).error / duration_of(mean_level_)});
   results.push_back({"entrainment_rate", "m/s", window_.all_volume_of(Passage::entrained) / (plan * duration)});
   results.push_back({"deposition_rate", "m/s", window_.all_volume_of(Passage::deposited) / (plan * duration)});
   results.push_back({"measured_from", "s", window_begun_});
@@ -89,7 +93,7 @@ std::vector<std::string> Reach::remarks() const {
   const double trend = bed_trend(mean_level_);
   if (std::isnan(trend)) return {transport};
   return {transport, fmt::format("reach: the level of the bed changes by {:+.3g} +- {:.2g} mm/s", 1e3 * trend,
-                                 1e3 * trend_of(mean_level_).error / (window_ended_ - window_begun_))};
+                                 1e3 * trend_of(mean_level_).error / duration_of(mean_level_))};
 }
 
 void Reach::add_by_section(std::vector<Profile>& profiles) const {

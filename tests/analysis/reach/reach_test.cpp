@@ -216,6 +216,19 @@ TEST(Reach, HasTheLevelOfWhatStandsStillAndItsTrend) {
   EXPECT_NEAR(named(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
 }
 
+// The same grain comes in after two records: the trend is that of the records that have a level.
+TEST(Reach, HasTheTrendOfABedThatIsBuiltUpLater) {
+  const Play play(true, 1, [](GlobalId, int look) {
+    return look < 8 ? std::nullopt : std::optional(Place{5.0, 0.0, 1.0 + 0.125 * ((look + 3) / 4)});
+  });
+  ReachKeys fine = keys;
+  fine.pixel = 0.03125;
+  Reach reach = observer_of(play, world, false, fine);
+  for (int look = 0; look <= 24; ++look) play.show(reach, world, look);
+  EXPECT_NEAR(value_of(reach.results(), "bed_level_trend"), 0.125, 1e-12);
+  EXPECT_NEAR(named(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
+}
+
 using thalweg::test::saved;
 
 using thalweg::test::load;
