@@ -49,6 +49,9 @@ FractionalTransport::FractionalTransport(MPI_Comm communicator, const PeriodicBo
       bed_volume_(static_cast<std::size_t>(classes.bins()), 0.0),
       bed_mass_(bed_volume_),
       bed_diameter_(bed_volume_),
+      volume_sums_(bed_volume_),
+      mass_sums_(bed_volume_),
+      size_sums_(bed_volume_),
       load_sums_(bed_volume_),
       q_s_(classes.count(), 0.0),
       surface_share_(q_s_),
@@ -132,12 +135,25 @@ void FractionalTransport::add(const Snapshot& /*snapshot*/) {
     means_[c].surface_share.add(surface_share_[c]);
     means_[c].moving_grains.add(moving_grains_[c]);
   }
-  for (std::size_t b = 0; b < load_.size(); ++b) load_sums_[b] += load_[b];
+  for (std::size_t b = 0; b < load_.size(); ++b) {
+    volume_sums_[b] += bed_volume_[b];
+    mass_sums_[b] += bed_mass_[b];
+    if (bed_volume_[b] > 0.0) size_sums_[b] += bed_volume_[b] * std::log(bed_diameter_[b]);
+    load_sums_[b] += load_[b];
+  }
   if (std::isfinite(latest_[0])) surface_d50_.add(latest_[0]);
   moving_surface_sum_[0] += latest_[1];
 }
 
 double FractionalTransport::bed_d50() const { return median_diameter(bed_volume_, bed_diameter_); }
+
+double FractionalTransport::load_d50() const {
+  std::vector<double> diameters;
+  for (std::size_t b = 0; b < load_sums_.size(); ++b)
+    diameters.push_back(volume_sums_[b] > 0.0 ? std::exp(size_sums_[b] / volume_sums_[b]) : 0.0);
+  const double load = median_diameter(load_sums_, diameters);
+  return load > 0.0 ? load : not_a_number;
+}
 
 struct FractionalTransport::Findings {
   std::vector<double> diameter, density, bed_share, surface_share, surface_share_error, load_share;
@@ -146,19 +162,17 @@ struct FractionalTransport::Findings {
 
 FractionalTransport::Findings FractionalTransport::findings() const {
   Findings found;
-  const std::vector<double> volume = classes_.by_class(bed_volume_), mass = classes_.by_class(bed_mass_);
-  const double whole = sum_of(volume);
+  const std::vector<double> latest = classes_.by_class(bed_volume_), size = classes_.by_class(size_sums_);
+  const std::vector<double> volume = classes_.by_class(volume_sums_), mass = classes_.by_class(mass_sums_);
+  const double whole = sum_of(latest);
   double all = 0.0;
   for (const ClassMeans& means : means_) all += means.q_s.mean();
   for (std::size_t c = 0; c < classes_.count(); ++c) {
-    double size = 0.0;
-    for (std::size_t b = c * SizeClasses::bins_a_class; b < (c + 1) * SizeClasses::bins_a_class; ++b)
-      if (bed_volume_[b] > 0.0) size += bed_volume_[b] * std::log(bed_diameter_[b]);
     const ClassMeans& means = means_[c];
     const double q_s = means.q_s.mean(), error = means.q_s.error().of_mean, share = means.surface_share.mean();
-    found.diameter.push_back(volume[c] > 0.0 ? std::exp(size / volume[c]) : classes_.middle(c));
+    found.diameter.push_back(volume[c] > 0.0 ? std::exp(size[c] / volume[c]) : classes_.middle(c));
     found.density.push_back(share_of(mass[c], volume[c]));
-    found.bed_share.push_back(share_of(volume[c], whole));
+    found.bed_share.push_back(share_of(latest[c], whole));
     found.surface_share.push_back(share);
     found.surface_share_error.push_back(means.surface_share.error().of_mean);
     found.load_share.push_back(share_of(q_s, all));
@@ -195,7 +209,7 @@ std::vector<Diagnostic> FractionalTransport::results() const {
       {"bed_d50", "m", bed},
       {"surface_d50_mean", "m", surface},
       {"surface_d50_error", "m", error},
-      {"load_d50", "m", median_diameter(load_sums_, bed_diameter_)},
+      {"load_d50", "m", load_d50()},
       {"armouring_ratio_mean", "1", surface / bed},
       {"armouring_ratio_error", "1", error / bed},
       {"moving_surface_share_mean", "1", moving_surface_sum_[0] / static_cast<double>(measurements())}};
@@ -224,7 +238,7 @@ std::vector<Diagnostic> FractionalTransport::results() const {
 
 std::vector<std::string> FractionalTransport::remarks() const {
   if (measurements() == 0) return {};
-  const double bed = bed_d50(), load = median_diameter(load_sums_, bed_diameter_);
+  const double bed = bed_d50(), load = load_d50();
   return {
       fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}", bed,
                   with_error(surface_d50_, 1.0),
@@ -235,13 +249,9 @@ std::vector<std::string> FractionalTransport::remarks() const {
 std::vector<Profile> FractionalTransport::profiles() const {
   const Findings found = findings();
   const std::uint64_t classes = classes_.count();
-  std::vector<Profile> profiles{{"edges", "m", {"edges"}, {}, {classes + 1}, classes_.edges()},
-                                {"d50",
-                                 "m",
-                                 {},
-                                 {"bed", "surface", "load"},
-                                 {3},
-                                 {bed_d50(), surface_d50_.mean(), median_diameter(load_sums_, bed_diameter_)}}};
+  std::vector<Profile> profiles{
+      {"edges", "m", {"edges"}, {}, {classes + 1}, classes_.edges()},
+      {"d50", "m", {}, {"bed", "surface", "load"}, {3}, {bed_d50(), surface_d50_.mean(), load_d50()}}};
   const auto add = [&](const char* name, const char* unit, const std::vector<double>& values) {
     profiles.push_back({name, unit, {"diameter"}, {}, {classes}, values});
   };

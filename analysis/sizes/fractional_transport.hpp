@@ -69,13 +69,13 @@ public:
   // each class class_0_diameter (m), _bed_share, _surface_share_mean and _error, _load_share, _q_s_mean and _error
   // (m^2/s), in a fluid _q_star_mean and _error (that of q_s), _moving_grains_mean; mean_from (s), measurements; the
   // latest diagnostics. Not a number as long as nothing was measured, for q* of a class that is not at the surface, and
-  // for shares of a load that is not positive.
+  // for shares and d50 of a load that is not positive.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;  // the three median sizes and the armouring ratio
 
-  // edges (m), one more than classes; d50 (m: of bed, surface, load); by class: diameter (m, of an empty one the
-  // geometric mean of its edges), density (kg/m^3), bed_share, surface_share and _error, load_share, q_s and q_s_error
-  // (m^2/s), in a fluid q_star and q_star_error, moving_grains and _error.
+  // edges (m), one more than classes; d50 (m: of bed, surface, load); by class: diameter (m, of one that had no grains
+  // the geometric mean of its edges) and density (kg/m^3) over the measurements, bed_share of the latest, surface_share
+  // and _error, load_share, q_s and q_s_error (m^2/s), in a fluid q_star and q_star_error, moving_grains and _error.
   std::vector<Profile> profiles() const override;
 
 private:
@@ -99,12 +99,15 @@ private:
   std::vector<Grain> sort_grains(const GrainView& grains, std::vector<SeenSphere>& seen) const;
   void measure_transport(const std::vector<Grain>& grains);
   void measure_surface(const std::vector<SeenSphere>& seen);
-  double bed_d50() const;  // m
+  double bed_d50() const;   // m
+  double load_d50() const;  // m
   // Pointers to what is saved; the latest measurement too, as a row of the series may come before the next.
   static auto sums_of(auto& self) {
-    return std::array{
-        &self.bed_volume_, &self.bed_mass_,      &self.bed_diameter_,  &self.load_sums_, &self.load_,
-        &self.q_s_,        &self.surface_share_, &self.moving_grains_, &self.latest_,    &self.moving_surface_sum_};
+    return std::array{&self.bed_volume_,        &self.bed_mass_,      &self.bed_diameter_,
+                      &self.volume_sums_,       &self.mass_sums_,     &self.size_sums_,
+                      &self.load_sums_,         &self.load_,          &self.q_s_,
+                      &self.surface_share_,     &self.moving_grains_, &self.latest_,
+                      &self.moving_surface_sum_};
   }
   static auto means_of(auto& self) {
     std::vector all{&self.surface_d50_};
@@ -118,8 +121,11 @@ private:
   double area_;            // m^2, of the plan
   double disk_thickness_;  // m; 0: spheres
   PlanView view_;
-  // Of bins: the grains of the bed (m^3, kg, m), and the sum of the load over the measurements that count (m^2/s).
-  std::vector<double> bed_volume_, bed_mass_, bed_diameter_, load_sums_;
+  // Of bins: the grains of the bed (m^3, kg, m) at the latest measurement.
+  std::vector<double> bed_volume_, bed_mass_, bed_diameter_;
+  // Of bins, over the measurements that count: volume (m^3), mass (kg) and volume times ln(diameter/m) of the grains,
+  // by which a class that has left keeps its size and density, and the load (m^2/s).
+  std::vector<double> volume_sums_, mass_sums_, size_sums_, load_sums_;
   // The latest measurement, by class and, of the load, by bin.
   std::vector<double> q_s_, surface_share_, moving_grains_, load_;
   std::vector<double> latest_{0.0, 0.0};  // surface d50 (m), moving share of the surface

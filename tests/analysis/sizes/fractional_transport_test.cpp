@@ -183,6 +183,30 @@ TEST(FractionalTransport, TakesTheMeanFromAGivenTimeAndCarriesItOverARestart) {
   EXPECT_NE(whole.remarks().front().find("armouring ratio 2.5 +- "), std::string::npos) << whole.remarks().front();
 }
 
+// The large grains, which carry all of the load, leave by a sink: what has moved keeps its size and density.
+TEST(FractionalTransport, KeepsTheSizeOfAClassThatHasLeft) {
+  FractionalTransport whole = of_two_classes(), restarted = of_two_classes();
+  whole.observe(armoured_bed(world, 0.0, 0.4).snapshot(0.0));
+  const MadeUpGrains rest(world, small_grains + large_grains, [](GlobalId id) {
+    return id < small_grains ? std::optional(armoured(id, 0.0, 0.4)) : std::nullopt;
+  });
+  whole.observe(rest.snapshot(1.0));
+  const test::MemoryArchive checkpoint = test::saved(whole, world);
+  test::MemoryReader reader(checkpoint);
+  ASSERT_TRUE(restarted.load(reader));
+  const double share = 0.5 * value_of(whole.results(), "class_1_surface_share_mean") / 0.5;
+  for (const FractionalTransport* observer : {&whole, &restarted}) {
+    const std::vector<Diagnostic> results = observer->results();
+    EXPECT_NEAR(value_of(results, "load_d50"), large, 1e-14);
+    EXPECT_NEAR(value_of(results, "class_1_diameter"), large, 1e-14);
+    EXPECT_NEAR(shown_by(*observer).at("density").at(1), 3000.0, 1e-9);
+    EXPECT_EQ(value_of(results, "class_1_bed_share"), 0.0);
+    const double q_s = 0.5 * large_grains * volume(large) * 0.4 / 200.0;
+    EXPECT_NEAR(value_of(results, "class_1_q_star_mean"), q_s / (share * std::sqrt(20.0)), 1e-13);
+  }
+  EXPECT_NE(whole.remarks().front().find("of the load 1 m"), std::string::npos) << whole.remarks().front();
+}
+
 RunContext run_of(double smallest, double largest, bool held = false) {
   RunContext run;
   run.box = box;
