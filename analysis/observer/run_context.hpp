@@ -4,6 +4,7 @@
 #include "core/base/types.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/parallel/decomposition.hpp"
+#include "core/state/population_ids.hpp"
 
 #include <mpi.h>
 
@@ -58,6 +59,7 @@ struct GrainContext {
   std::vector<double> size_class_edges = {};
   // Ids, ascending, of spheres that are no grains of the bed but stand in it: a sill, a pier, a boulder.
   std::vector<GlobalId> obstacles = {};
+  std::vector<std::int64_t> supplied = {};  // of the grains that come in later, as PopulationIds has it
 
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)
   Force body_force = {};                                          // in a fluid only, as the next two

@@ -25,6 +25,7 @@
 #include "analysis/tools/grain_ring.hpp"
 #include "analysis/tools/watched_here.hpp"
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -80,8 +81,8 @@ public:
 
   // watched_grains, entrainments (1: so far).
   std::vector<Diagnostic> diagnostics() const override;
-  // These; entrainments_with_share, couple_share_mean, couple_share_deviation, couple_share_error (1; 0 where there are
-  // too few events).
+  // These; entrainments_with_share, couple_share_mean, couple_share_deviation, couple_share_error (1; not a
+  // number where there are too few events).
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
@@ -123,7 +124,8 @@ private:
   };
 
   struct Shares {
-    double mean = 0.0, deviation = 0.0, error = 0.0;
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double mean = unknown, deviation = unknown, error = unknown;  // the last two from two starts on
   };
 
   Shares shares() const;

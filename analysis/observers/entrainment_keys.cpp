@@ -35,10 +35,11 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
              {.unit = "1",
               .meaning = "a grain counts as entrained this many of its diameters away from its rest position",
               .above = 0.0});
-  visit.real("rest_time", keys.rest_time,
-             {.unit = "s",
-              .meaning = "a grain is at rest after it has been slower than 1 % of sqrt((s - 1) g d) for this long",
-              .at_least = 0.0});
+  visit.real(
+      "rest_time", keys.rest_time,
+      {.unit = "s",
+       .meaning = "a grain is at rest after it has been slower than the moving speed of transport_rate for this long",
+       .at_least = 0.0});
 }
 
 void check(const EntrainmentKeys& keys, const RunContext& run) {

@@ -10,8 +10,14 @@
 namespace thalweg::analysis {
 
 PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box,
-                                 std::vector<PopulationContext> populations, bool with_fluid)
-    : communicator_(communicator), box_(box), populations_(std::move(populations)), with_fluid_(with_fluid) {
+                                 std::vector<PopulationContext> populations, bool with_fluid,
+                                 std::vector<std::int64_t> supplied)
+    : communicator_(communicator),
+      box_(box),
+      populations_(std::move(populations)),
+      ids_{{}, std::move(supplied)},
+      with_fluid_(with_fluid) {
+  for (const PopulationContext& population : populations_) ids_.ends.push_back(population.end);
   for (const PopulationContext& population : populations_)
     for (const char* source : {"contact", "fluid"}) {
       if (!with_fluid_ && source[0] == 'f') continue;
@@ -27,11 +33,12 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
   auto diagnostic = diagnostics_.begin();
   std::vector<double> terms;
   const auto add = [&terms](const Vec3& v) { terms.insert(terms.end(), v.data(), v.data() + 3); };
-  for (const PopulationContext& population : populations_) {
-    const Vec3 pivot = box_.wrapped_from_afar(population.pivot(snapshot.time));  // it goes on where grains come back
+  for (std::size_t p = 0; p < populations_.size(); ++p) {
+    const Vec3 pivot =
+        box_.wrapped_from_afar(populations_[p].pivot(snapshot.time));  // it goes on where grains come back
     terms.clear();
     for (std::size_t i = 0; i < grains.id.size(); ++i) {
-      if (grains.id[i] < population.first || grains.id[i] >= population.end) continue;
+      if (population_of(grains.id[i], ids_) != static_cast<std::int64_t>(p)) continue;
       const Vec3 arm = box_.difference(grains.position[i], pivot);
       add(grains.contact_force[i]);
       add(arm.cross(grains.contact_force[i]) + grains.contact_torque[i]);
@@ -48,7 +55,7 @@ void describe(SectionVisitor&, PopulationLoadsKeys&) {}
 std::unique_ptr<Observer> make_observer(const PopulationLoadsKeys&, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<PopulationLoads>(system.communicator, run.box, run.grains->populations,
-                                           run.fluid || run.model_fluid);
+                                           run.fluid || run.model_fluid, run.grains->supplied);
 }
 
 }  // namespace thalweg::analysis

@@ -12,6 +12,7 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,9 @@ inline ObserverMemory memory_of(const PopulationLoadsKeys&, const RunContext&, c
 
 class PopulationLoads : public Observer {
 public:
-  // with_fluid: fluid forces, too.
+  // with_fluid: fluid forces, too. supplied: as PopulationIds has it.
   PopulationLoads(MPI_Comm communicator, const PeriodicBox& box, std::vector<PopulationContext> populations,
-                  bool with_fluid);
+                  bool with_fluid, std::vector<std::int64_t> supplied = {});
 
   std::string name() const override { return "population_loads"; }
   void observe(const Snapshot& snapshot) override;
@@ -49,6 +50,7 @@ private:
   MPI_Comm communicator_;
   PeriodicBox box_;
   std::vector<PopulationContext> populations_;
+  PopulationIds ids_;
   bool with_fluid_;
   std::vector<Diagnostic> diagnostics_;
 };

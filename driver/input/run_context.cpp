@@ -61,6 +61,7 @@ analysis::GrainContext grain_context(const Case& c) {
   analysis::GrainContext context{populations_of(c),    reference.diameter,  reference.density,
                                  smallest_diameter(c), largest_diameter(c), c.disks ? c.disks->thickness : 0.0};
   add_sizes(c, context);
+  context.supplied = population_ids(c).supplied;
   context.recirculation =
       std::any_of(c.sinks.begin(), c.sinks.end(), [](const auto& sink) { return sink.recirculation.has_value(); });
   for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.push_back(sphere.id);
@@ -88,8 +89,8 @@ analysis::RunContext run_context(const Case& c) {
   return context;
 }
 
-io::PopulationIds population_ids(const Case& c) {
-  io::PopulationIds ids;
+PopulationIds population_ids(const Case& c) {
+  PopulationIds ids;
   for (const beds::Population& grains : c.grains)
     ids.ends.push_back((ids.ends.empty() ? 0 : ids.ends.back()) + grains.row_count());
   for (const beds::SupplyKeys& supply : c.supplies) {

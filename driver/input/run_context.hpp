@@ -9,7 +9,7 @@ namespace thalweg::driver {
 analysis::RunContext run_context(const Case& c);
 
 // Facts for the frames of the grains.
-io::PopulationIds population_ids(const Case& c);
+PopulationIds population_ids(const Case& c);
 io::GrainOutputFacts grain_output_facts(const Case& c);
 
 }  // namespace thalweg::driver

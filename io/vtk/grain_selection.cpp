@@ -18,14 +18,6 @@ void describe_selection(SectionVisitor& visit, GrainSelectionKeys& keys) {
   visit.section("box", keys.box, {.meaning = "only grains with their centre in it at the time of the frame"});
 }
 
-std::int64_t population_of(GlobalId id, const PopulationIds& populations) {
-  const std::vector<GlobalId>& ends = populations.ends;
-  const GlobalId first_supplied = ends.empty() ? 0 : ends.back();
-  if (id >= first_supplied && !populations.supplied.empty())
-    return populations.supplied[static_cast<std::size_t>(id - first_supplied) % populations.supplied.size()];
-  return std::upper_bound(ends.begin(), ends.end(), id) - ends.begin();
-}
-
 namespace {
 
 void check_shown_box(const BoxKeys& box, const Vec3& domain_size) {

@@ -3,6 +3,7 @@
 
 #include "core/base/types.hpp"
 #include "core/keys/section_visitor.hpp"
+#include "core/state/population_ids.hpp"
 #include "io/text/box_keys.hpp"
 
 #include <cstdint>
@@ -19,16 +20,6 @@ struct GrainSelectionKeys {
   bool operator==(const GrainSelectionKeys&) const = default;
 };
 void describe_selection(SectionVisitor& visit, GrainSelectionKeys& keys);
-
-// The ids of the populations of a case. Those of the grains at the start are consecutive; those that come in later are
-// in rounds (dem/supply/turnover.hpp).
-struct PopulationIds {
-  std::vector<GlobalId> ends;          // of each population, the id after its last one at the start
-  std::vector<std::int64_t> supplied;  // the population of each id of a round; empty: none comes in
-};
-
-// The number of the population that a grain belongs to.
-std::int64_t population_of(GlobalId id, const PopulationIds& populations);
 
 // Throws KeyError where there is no such grain or population, the box is empty, or it reaches out of a domain of this
 // size (m).

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace thalweg::analysis::population_loads_test {
 namespace {
 
@@ -46,6 +48,20 @@ TEST(PopulationLoads, AddsForcesAndTurnsThemAboutThePivot) {
 
   PopulationLoads dry(MPI_COMM_WORLD, box, {{"wall", 0, 2, [](double) { return Vec3::Zero(); }}}, false);
   EXPECT_EQ(dry.diagnostics().size(), 6u);
+}
+
+// Of the three ids of a round the first and the last are of the second population: with 2 at the start these are 2, 4,
+// 5, 7.
+TEST(PopulationLoads, AddsGrainsThatHaveComeIn) {
+  const MadeUpGrains grains(MPI_COMM_WORLD, 8, [](GlobalId id) {
+    return MadeUpGrain{.contact_force = Vec3(std::pow(10.0, static_cast<double>(id)), 0.0, 0.0)};
+  });
+  const auto origin = [](double) { return Vec3::Zero(); };
+  PopulationLoads loads(MPI_COMM_WORLD, made_up_box().box(), {{"a", 0, 1, origin}, {"b", 1, 2, origin}}, false,
+                        {1, 0, 1});
+  loads.observe(grains.snapshot(1.0));
+  EXPECT_EQ(value_of(loads.diagnostics(), "a_contact_force_x"), 1001001.0);
+  EXPECT_EQ(value_of(loads.diagnostics(), "b_contact_force_x"), 10110110.0);
 }
 
 // A model fluid loads grains as water does.
