@@ -80,7 +80,8 @@ double slope_for(const FlowNumbers& flow, double shields) {
 double settled_height(const Case& c) {
   if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
   if (const Obstacles obstacles = obstacles_of(c); !obstacles.spheres.empty()) return settled_height(c, obstacles);
-  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * c.domain.size.y());
+  const double width = c.disks ? c.disks->thickness : c.domain.size.y();
+  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * width);
 }
 
 bool drives_flow(const Case& c, int axis) {
@@ -103,6 +104,7 @@ double depth_of(const Case& c, double hydraulic_radius) {
 }
 
 double settled_fraction(const Case& c) {
+  if (c.disks) return beds::settled_disks;
   const bool between_walls =
       c.domain.faces[y_low].type != lbm::FaceType::periodic && c.domain.faces[y_high].type != lbm::FaceType::periodic;
   const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;

@@ -59,7 +59,7 @@ double hydraulic_radius(const Case& c, double depth);
 double depth_of(const Case& c, double hydraulic_radius);
 
 // Solid fraction of a settled bed: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between side walls closer
-// than three diameters, as of the 969 grains in the flume of Zhang et al. 2022, 18 diameters high.
+// than three diameters, as of the 969 grains in the flume of Zhang et al. 2022, 18 diameters high; 0.8 of disks.
 double settled_fraction(const Case& c);
 
 }  // namespace thalweg::driver

@@ -1,6 +1,8 @@
 #include "driver/execution/watch_rules.hpp"
 
 #include "dem/laws/contact_laws.hpp"
+#include "dem/laws/liquid_bridge.hpp"
+#include "driver/case/solid_setup.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace thalweg::driver {
 
@@ -105,6 +108,25 @@ double prescribed_speed(const Case& c) {
     if (face.has_velocity()) largest = std::max(largest, face.velocity.norm() + oscillation_speed(face.oscillation));
   for (const beds::WallKeys& wall : c.walls)
     largest = std::max(largest, wall.velocity.norm() + oscillation_speed(wall.oscillation));
+  for (const SolidCase& solid : c.solids) largest = std::max(largest, largest_speed(solid));
+  for (const beds::SupplyKeys& supply : c.supplies)
+    if (supply.velocity) largest = std::max(largest, supply.velocity->norm());
+  for (const beds::SinkKeys& sink : c.sinks)
+    if (sink.recirculation && sink.recirculation->velocity)
+      largest = std::max(largest, sink.recirculation->velocity->norm());
+  return largest;
+}
+
+// m/s, that a liquid bridge gives the smallest grain which it pulls to another or a wall: sqrt(2 W/m), with W the work
+// of its largest force, 2 pi gamma cos(theta) d, over the whole distance at which it breaks.
+double speed_of_bridges(const Case& c) {
+  if (!c.contact.liquid_bridge) return 0.0;
+  const dem::LiquidBridge bridge(*c.contact.liquid_bridge);
+  double largest = 0.0;
+  for (const beds::Population& grains : c.grains) {
+    const double d = grains.smallest_diameter(), mass = grains.density * std::numbers::pi / 6.0 * d * d * d;
+    largest = std::max(largest, std::sqrt(2.0 * bridge.pull(0.0, 0.5 * d) * bridge.rupture_distance() / mass));
+  }
   return largest;
 }
 
@@ -212,8 +234,11 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
   const double unit = has_fluid(c) ? units_of(c).velocity() : never;
   rules.push_back(
       {"largest_grain_speed", Side::above,
-       [expected, unit](const std::vector<Diagnostic>& diagnostics) {
-         const double speed = expected + find_diagnostic(diagnostics, "largest_fluid_speed").value_or(0.0);
+       [expected, unit, taken = 0.0,
+        unknown = c.initial.takes(InitialField::grains)](const std::vector<Diagnostic>& diagnostics) mutable {
+         // Grains of another run bring their speeds along, which show when the rule is first asked.
+         if (std::exchange(unknown, false)) taken = find_diagnostic(diagnostics, "largest_grain_speed").value_or(0.0);
+         const double speed = expected + taken + find_diagnostic(diagnostics, "largest_fluid_speed").value_or(0.0);
          const double stop = std::min(impossible_speed * speed, broken_lattice_velocity * unit);
          return WatchLimits{std::min({suspicious_speed * speed, fast_lattice_velocity * unit, stop}), stop};
        },
@@ -236,8 +261,8 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
 }  // namespace
 
 double expected_grain_speed(const Case& c) {
-  const double speed =
-      fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) + speed_of_overlaps(c);
+  const double speed = fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) +
+                       speed_of_overlaps(c) + speed_of_bridges(c);
   return std::max(speed, speed_of_rounding(c));
 }
 

@@ -193,6 +193,11 @@ void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {
                       axis_name[axis], axis_name[axis]));
   if (c.grains.empty() || balancing_acceleration(c).isZero(0.0))
     throw document.error("gravity.mode", "there is no weight of free grains to balance; set mode: reduced");
+  if (!c.supplies.empty() || !c.sinks.empty())
+    throw document.error(
+        "gravity.mode",
+        "balanced gravity carries the weight of the grains of the start, and supplies and sinks change "
+        "it; remove them, or set mode: reduced");
 }
 
 void check_gravity(const Case& c, const io::YamlDocument& document) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace thalweg::driver::bed_flow_test {
 namespace {
@@ -65,6 +66,16 @@ TEST(FlowNumbers, KnowHowHighABedSettles) {
   EXPECT_NEAR(flow_numbers(bed).bed_height / 5e-3, 13.1, 0.05);
   flume.domain.size.y() = 0.0149;  // three diameters and more
   EXPECT_EQ(settled_fraction(flume), 0.6);
+}
+
+// Disks lie in one layer, as wide as they are thick: 60 of 4 mm on 60 mm, 0.8 of whose plane they cover.
+TEST(FlowNumbers, KnowHowHighDisksSettle) {
+  Case c = water_over_glass(4e-3, 0.0, 0.05, 0.009, lbm::FaceType::periodic);
+  c.domain.size.x() = 0.06;
+  c.disks.emplace().thickness = 2e-3;
+  c.grains.front().thickness = 2e-3;
+  c.grains.front().count = 60;
+  EXPECT_NEAR(settled_height(c), 60.0 * std::numbers::pi * 4e-6 / (0.8 * 0.06), 1e-9);
 }
 
 // Grains without weight, as in a shear cell, are where they are put.

@@ -81,6 +81,36 @@ TEST(WatchRules, GrainsMayFallAndBeCarried) {
               3.0 + 3.0 * 9.8 * std::sin(angle) + std::sqrt(2.0 * 9.8 * std::cos(angle) * 0.075), 1e-9);
 }
 
+// What the case itself moves: a solid, grains that come in, moist grains that a bridge pulls together, those of another
+// run.
+TEST(WatchRules, GrainsMayBeAsFastAsTheCaseMovesThem) {
+  Case still = read_text(flume);
+  still.system = SystemKind::grains;
+  still.gravity.magnitude = 0.0;
+  const double rounding = expected_grain_speed(still);
+  Case solid = still, supply = still, back = still, moist = still;
+  solid.solids.emplace_back().sphere = SphereCase{Vec3(0.02, 0.005, 0.05), 0.004};
+  solid.solids[0].motion.emplace().velocity = Vec3(0.2, 0.0, 0.0);
+  EXPECT_NEAR(expected_grain_speed(solid), 0.2, 2.0 * rounding);
+  supply.supplies.emplace_back().velocity = Vec3(0.0, 0.3, -0.4);
+  EXPECT_NEAR(expected_grain_speed(supply), 0.5, 2.0 * rounding);
+  back.sinks.emplace_back().recirculation.emplace().velocity = Vec3(0.1, 0.0, 0.0);
+  EXPECT_NEAR(expected_grain_speed(back), 0.1, 2.0 * rounding);
+  // At least the speed to which the work of the bridge as it closes brings two spheres, each with half of it. Its force
+  // falls from 2 pi R gamma at contact to a tenth or less at V^(1/3).
+  moist.contact.liquid_bridge = {0.073, 0.0, 1e-11};
+  const double d = 4.95e-3, work = 0.3 * M_PI * d * 0.073 * std::cbrt(1e-11), mass = 2550.0 * M_PI / 6.0 * d * d * d;
+  EXPECT_GT(expected_grain_speed(moist), std::sqrt(work / mass));
+  EXPECT_LT(expected_grain_speed(moist), 10.0 * std::sqrt(work / mass));
+
+  still.initial.from.grains = "elsewhere";
+  for (const WatchRule& rule : watch_rules(still))
+    if (rule.diagnostic == "largest_grain_speed") {
+      EXPECT_GT(rule.limits({{"largest_grain_speed", "m/s", 0.1}}).warn, 0.1);
+      EXPECT_LT(rule.limits({{"largest_grain_speed", "m/s", 0.8}}).stop, 0.8);
+    }
+}
+
 // Grains that a dense placement leaves in touch part by rounding, and such a run goes on.
 TEST(WatchRules, GrainsWithoutWeightMayMoveByRounding) {
   Case still = read_text(flume);
