@@ -12,7 +12,7 @@ namespace thalweg::dem {
 
 namespace {
 
-constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step, of all supplies, and that return
+constexpr std::size_t most_at_once = 64;  // bodies that seek a place in one step, of all supplies, and of all sinks
 constexpr double rounding = 1e-9;         // of a count or mass that is due
 
 void check_zone(const Zone& zone, const PeriodicBox& box, const std::string& what) {
@@ -31,6 +31,9 @@ void check_height(const Entrance& entrance, const PeriodicBox& box, const std::s
   if (box.periodic[2])
     throw InputError(fmt::format("There is no bed for {} to be above: the box is periodic upwards.", what));
 }
+
+// Bodies of each of so many supplies or sinks: an equal share, so that none has to wait for another.
+std::size_t share_of_each(std::size_t count) { return most_at_once / std::max<std::size_t>(1, count) + 1; }
 
 // The height (m) at which a body left the box, if its entrance has that height, too.
 std::optional<double> height_within(const Zone& zone, const TravellingBody& body) {
@@ -96,17 +99,16 @@ bool Turnover::is_due(const Supply& supply, const Tally& so_far, double mass, do
 std::vector<PlaceSeeker> Turnover::due(double time) const {
   std::vector<PlaceSeeker> seekers;
   int queue = 0;
+  std::vector<std::size_t> of_sink(sinks_.size(), 0);
   for (const ReturningBody& back : state_.returning) {
-    if (seekers.size() == most_at_once) break;
-    if (back.due > time) continue;
+    if (back.due > time || of_sink[back.sink] == share_of_each(sinks_.size())) continue;
+    ++of_sink[back.sink];
     const Entrance& entrance = sinks_[back.sink].recirculation->entrance;
     seekers.push_back({back.body, &entrance, height_within(entrance.zone, back.body), queue++});
   }
-  // An equal share for every supply, so that none has to wait for another.
-  const std::size_t share = most_at_once / std::max<std::size_t>(1, supplies_.size()) + 1;
   for (std::size_t s = 0; s < supplies_.size(); ++s, ++queue) {
     Tally so_far = state_.supplied[s];
-    for (std::size_t n = 0; n < share; ++n) {
+    for (std::size_t n = 0; n < share_of_each(supplies_.size()); ++n) {
       TravellingBody next = body_of(s, so_far.bodies);
       if (!is_due(supplies_[s], so_far, next.mass(), time)) break;
       so_far.add(next.mass());

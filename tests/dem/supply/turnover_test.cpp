@@ -65,6 +65,26 @@ TEST(Turnover, SameBitsOfGrainsThatComeInAboveTheBed) {
   expect_same_bits(p);
 }
 
+// A hundred bodies of one sink find no place, and one of another sink comes after them.
+TEST(Turnover, BodiesThatFindNoPlaceBlockNoOtherSink) {
+  const Decomposition cuts = box_on(1);
+  Sink full, free;
+  full.zone = free.zone = {Vec3::Zero(), Vec3(0.01, 0.01, 0.01)};
+  full.recirculation = free.recirculation = {{{Vec3(0.01, 0.0, 0.03), Vec3(0.03, 0.02, 0.038)}, std::nullopt, 5}, 0.0};
+  Turnover book({}, {full, free}, cuts.box());
+  const TravellingBody body =
+      bodies_of(GrainSeeds{{test::glass_sphere(0, Vec3(0.005, 0.005, 0.005), Vec3::Zero(), small)}, {}}, cuts.box())
+          .front();
+  for (GlobalId id = 0; id <= 100; ++id) {
+    TravellingBody next = body;
+    next.renumber(id);
+    book.leave(std::move(next), id < 100 ? 0 : 1, 1.0);
+  }
+  const std::vector<PlaceSeeker> due = book.due(2.0);
+  EXPECT_TRUE(std::any_of(due.begin(), due.end(), [](const PlaceSeeker& seeker) { return seeker.body.id() == 100; }));
+  EXPECT_LT(due.size(), 70u);
+}
+
 TEST(Turnover, ACheckpointThatHasLostGrainsIsRefused) {
   const GrainParameters p = busy_box();
   const Decomposition cuts = box_on(size_of(MPI_COMM_WORLD));
