@@ -29,9 +29,6 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
 
-// m, of a depth (m): from the bed up to where the top begins to hold the flow.
-double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
-
 double settled_height(const Case& c, const Obstacles& obstacles) {
   const PeriodicBox box = grain_box(c);
   const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
@@ -93,6 +90,8 @@ bool drives_flow(const Case& c, int axis) {
 }
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
+
+double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
 
 double hydraulic_radius(const Case& c, double depth) {
   return thalweg::hydraulic_radius(held_by_the_bed(c, depth), c.domain.size.y(), side_walls(c));

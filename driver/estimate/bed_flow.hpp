@@ -52,6 +52,9 @@ bool drives_flow(const Case& c, int axis);
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
 
+// m, of a depth (m): half of it under a top that drags and holds the other half.
+double held_by_the_bed(const Case& c, double depth);
+
 // m, of a flow of this depth (m): H W/(n H + W) beside n such side walls, with half the depth under a top that drags.
 double hydraulic_radius(const Case& c, double depth);
 

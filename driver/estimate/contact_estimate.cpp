@@ -150,7 +150,8 @@ double stress_ratio_at_base(const Case& c) {
   const double water = has_fluid(c) ? c.fluid.density : 0.0;
   const double excess = settled_fraction(c) * (grain.density - water);
   if (excess <= neutral_density * water) return 0.0;
-  return (water * depth + (water + excess) * height) * gravity.x() / (excess * height * -gravity.z());
+  return (water * held_by_the_bed(c, depth) + (water + excess) * height) * gravity.x() /
+         (excess * height * -gravity.z());
 }
 
 double bulk_friction(double friction) {

@@ -45,7 +45,7 @@ struct DryRestitution {
 std::optional<DryRestitution> dry_restitution(const Case& c);
 
 // Shear stress over normal stress between the grains at the base of a settled bed, where gravity along x drives water
-// and grains: with the pores full of water and H of it above,
+// and grains: with the pores full of water and H of it above, as far as the bed holds it,
 //   [rho_f H + (rho_f + phi (rho_s - rho_f)) h] g_x / [phi (rho_s - rho_f) h g_z],
 // and dry g_x/g_z. 0 where nothing drives the bed, where side walls carry it, and for less than two layers.
 double stress_ratio_at_base(const Case& c);

@@ -300,6 +300,9 @@ TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
                cosine = std::cos(std::atan(0.016));
   const double shear = (1000.0 * depth + (1000.0 + 0.6 * 1550.0) * height) * sine;
   EXPECT_NEAR(stress_ratio_at_base(c), shear / (0.6 * 1550.0 * height * cosine), 1e-12);
+  Case lid = c;
+  lid.domain.faces[top].type = lbm::FaceType::no_slip;  // holds half of the water
+  EXPECT_NEAR(stress_ratio_at_base(lid), (shear - 500.0 * depth * sine) / (0.6 * 1550.0 * height * cosine), 1e-12);
   c.contact.friction = 0.5;
   EXPECT_FALSE(any_contains(warnings(c), "slides as a whole"));
   c.gravity.slope = 0.2;
