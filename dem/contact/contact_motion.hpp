@@ -43,10 +43,12 @@ inline ContactMotion motion_of(const ContactBody& first, const ContactBody& seco
   return {overlap, n[0], n[1], n[2], v[0], v[1], v[2], first.radius * second.radius / reach, w[0], w[1], w[2]};
 }
 
-// wall_velocity: m/s.
-inline ContactMotion motion_of(const ContactBody& grain, const WallView& wall, const Vec3& wall_velocity) {
+// wall_velocity: m/s, of its surface there; wall_spin: rad/s.
+inline ContactMotion motion_of(const ContactBody& grain, const WallView& wall, const Vec3& wall_velocity,
+                               const Vec3& wall_spin) {
   const Vec3& n = wall.normal;
-  const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n), &w = grain.spin;
+  const Vec3 v = grain.velocity - wall_velocity - wall.distance * grain.spin.cross(n);
+  const Vec3 w = grain.spin - wall_spin;
   return {grain.radius - wall.distance, n[0], n[1], n[2], v[0], v[1], v[2], grain.radius, w[0], w[1], w[2]};
 }
 

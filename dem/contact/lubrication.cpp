@@ -66,7 +66,7 @@ std::optional<NearSurfaces> between(const ContactBody& sphere, const WallTouch& 
   const Vec3 approach = sphere.velocity - wall.velocity;
   return NearSurfaces{n, height, 0.0,
                       averaged_load(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
-                                    approach - height * sphere.spin.cross(n), sphere.spin)};
+                                    approach - height * sphere.spin.cross(n), sphere.spin - wall.spin)};
 }
 
 void add_to_pair(PackedGrain& first, PackedGrain& second, const NearSurfaces& near) {

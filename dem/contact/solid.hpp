@@ -33,6 +33,7 @@ public:
   Vec3 velocity_at(const Vec3& point) const {  // m/s, of the solid at a point in space
     return turns_ ? Vec3(velocity_ + spin_.cross(point - centre_)) : velocity_;
   }
+  const Vec3& spin() const { return spin_; }  // rad/s
   // Bounds (m) of its coordinates, widened if it turns.
   const Vec3& lower() const { return lower_; }
   const Vec3& upper() const { return upper_; }

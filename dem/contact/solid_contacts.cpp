@@ -124,6 +124,7 @@ void SolidTouches::look(std::span<const NearSolid> near, std::size_t first, std:
                         false,
                         {view.distance, view.normal},
                         solids_[of.solid].velocity_at(view.foot),
+                        solids_[of.solid].spin(),
                         rounding > 0.0 ? radius * rounding / (radius + rounding) : radius});
   }
 }

@@ -61,6 +61,7 @@ struct SolidTouch {
   bool goes_on;      // true if that history is its own from the last evaluation, not that of another touch
   WallView view;
   Vec3 velocity;            // m/s, of the solid there
+  Vec3 spin;                // rad/s, of the solid
   double effective_radius;  // m, R1 R2/(R1 + R2)
 };
 

@@ -15,6 +15,7 @@ struct WallTouch {
   std::size_t wall;  // its number; of solid s the number of walls + s
   WallView view;
   Vec3 velocity;            // m/s, of the surface there
+  Vec3 spin;                // rad/s, of the wall: zero; of the solid
   double effective_radius;  // m
   double friction;
   std::size_t row;  // among the rows of the list's walls or solids
@@ -24,7 +25,7 @@ struct WallTouch {
 };
 
 inline ContactMotion motion_of(const ContactBody& grain, const WallTouch& touch) {
-  ContactMotion motion = motion_of(grain, touch.view, touch.velocity);
+  ContactMotion motion = motion_of(grain, touch.view, touch.velocity, touch.spin);
   motion.effective_radius = touch.effective_radius;
   return motion;
 }
@@ -35,7 +36,7 @@ void for_each_wall_touch(const Grains& grains, const NeighbourList& list, const 
   for (std::size_t row = 0; row < list.walls.size(); ++row) {
     const auto [slot, number] = list.walls[row];
     const Plane& wall = around.walls[number];
-    visit(WallTouch{slot, number, wall.seen_from(position_of(grains, slot), around.box), wall.velocity,
+    visit(WallTouch{slot, number, wall.seen_from(position_of(grains, slot), around.box), wall.velocity, Vec3::Zero(),
                     radius_of(grains, slot), wall.friction, row, true});
   }
 }
@@ -55,7 +56,7 @@ void for_each_solid_touch(const Grains& grains, const NeighbourList& list, const
         if (!touches.taken(first, near, row)) without_touch(near * touches_per_solid + row);
     for (const SolidTouch& touch : found) {
       const std::size_t solid = list.solids[touch.near].solid;
-      visit(WallTouch{slot, around.walls.size() + solid, touch.view, touch.velocity, touch.effective_radius,
+      visit(WallTouch{slot, around.walls.size() + solid, touch.view, touch.velocity, touch.spin, touch.effective_radius,
                       around.solids[solid].friction, row_of(touch), touch.goes_on});
     }
   });

@@ -4,12 +4,17 @@
 
 #include "core/base/counter_random.hpp"
 #include "tests/dem/grain_cases.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace thalweg::dem::lubrication_test {
 namespace {
@@ -90,6 +95,28 @@ Loads wall_loads(const Body& body, double gap) {
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
 }
 
+// The load on a body above a solid that turns about a pivot.
+Loads solid_loads(const Body& body, SolidSurface surface, const Vec3& position, const Vec3& pivot, const Vec3& spin) {
+  GrainStore store;
+  store.append(0, body.radius, 1e-4, Motion::free, position);
+  store.owned = 1;
+  store.velocity.back() = body.velocity, store.angular_velocity.back() = body.spin;
+  Solid solid{std::make_shared<SolidSurface>(std::move(surface)), 0.0, 0.0, {}};
+  solid.motion.centre = pivot;
+  solid.motion.axis = spin.normalized();
+  solid.motion.angular_velocity = spin.norm();
+  const PlacedSolid placed(solid, 0.0, 0.0);
+  const Surroundings around{{Vec3(0.1, 0.1, 0.1), {false, false, false}}, {}, {&placed, 1}, {&solid, 1}};
+  const std::vector glass{test::glass(0.9)};
+  const MaterialTable materials(glass, std::nullopt);
+  NeighbourList list = find_contacts(store, around, materials, cut_off, body.radius);
+  const Vec3 weightless = Vec3::Zero();
+  PackedGrainState grains;
+  grains.gather_from(store, {&weightless, 1});
+  add_lubrication(grains, list, around, parameters());
+  return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
+}
+
 const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
 constexpr double pi = std::numbers::pi;
 
@@ -136,6 +163,32 @@ TEST(Lubrication, LeadingTermsAtAWall) {
   expect_along(slides.torque[0], y, stokes * a * 2.0 / 15.0 * log);
   expect_along(turns.force[0], x, stokes * a * 2.0 / 15.0 * log);
   expect_along(turns.torque[0], y, -8.0 * pi * eta * a * a * a * 0.4 * log);
+}
+
+// What a solid's spin does to a grain at rest: a flat one that turns about the grain's centre does what the grain would
+// feel that turned the other way, 2/15 and 2/5 ln(1/h) as above; a sphere that turns about its own centre has Y12C.
+TEST(Lubrication, LeadingTermsAtASolidThatTurns) {
+  const double log = std::log(cut_off / gap), stokes = 6.0 * pi * eta * a, s = 1.0 + b / a;
+  const Vec3 centre(0.05, 0.05, 0.05), foot = centre - (a + gap) * z;
+  const auto block = [&] {
+    return SolidSurface(thalweg::test::box_mesh(foot - Vec3(0.03, 0.03, 0.01), foot + 0.03 * (x + y)));
+  };
+  const Loads flat = solid_loads({a}, block(), centre, centre, y);
+  expect_along(flat.force[0], x, -stokes * a * 2.0 / 15.0 * log);
+  expect_along(flat.torque[0], y, 8.0 * pi * eta * a * a * a * 0.4 * log);
+  const Vec3 middle = foot - b * z;
+  const Loads round = solid_loads({a}, SolidSurface::sphere(middle, b), centre, middle, y);
+  expect_along(round.torque[0], y,
+               -pi * eta * std::pow(a + b, 3.0) * 4.0 * b * b / (5.0 * a * a * s * s * s * s) * log);
+  // A grain that moves with the solid as one body feels nothing.
+  const Vec3 spin(20.0, -35.0, 9.0);
+  const double scale = stokes * a / gap;  // of a force at 1 m/s
+  for (const bool is_round : {false, true}) {
+    const Loads rigid = solid_loads({a, spin.cross(centre - middle), spin},
+                                    is_round ? SolidSurface::sphere(middle, b) : block(), centre, middle, spin);
+    EXPECT_LT(rigid.force[0].norm(), 1e-13 * scale);
+    EXPECT_LT(rigid.torque[0].norm(), 1e-13 * scale * a);
+  }
 }
 
 TEST(Lubrication, ConservesMomentumAndAngularMomentumAtAnyGap) {

@@ -294,6 +294,33 @@ TEST(Solids, TurningPaddleThrowsAGrain) {
   EXPECT_GT(v.y(), 0.99 * v.norm());
 }
 
+// Rolling friction holds a grain on a sphere that turns, up to a slope of mu_r: they go round as one body, and the
+// grain has the spin of the sphere.
+TEST(Solids, TurningOneCarriesAGrainThatDoesNotRoll) {
+  const double ball = 0.01, spin = 1.0, friction = 0.3;  // m, rad/s
+  const Vec3 centre(0.025, 0.025, 0.02);
+  Solid solid{std::make_shared<SolidSurface>(SolidSurface::sphere(centre, ball)), 0.6, friction, {}};
+  solid.motion.centre = centre;
+  solid.motion.axis = Vec3::UnitY();
+  solid.motion.angular_velocity = spin;
+  GrainParameters p = with_gravity(with({solid}, 0.5), Vec3(0.0, 0.0, -g));
+  p.time_step = 1e-5;
+  GrainSeed seed = test::glass_sphere(0, centre);
+  const double arm = ball + radius;  // it touches; its weight presses it in by 8e-8 m
+  seed.position.z() += arm;
+  seed.velocity = Vec3(spin * arm, 0.0, 0.0);
+  seed.angular_velocity = Vec3(0.0, spin, 0.0);
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, p, {seed});
+  for (int n = 1; n <= 800; ++n) {  // 0.2 s; tan(0.2) is 0.2, below both frictions
+    test::step(grains);
+    // The springs give way by m g sin(0.2)/k_t, 6e-8 m, and by m g R sin(0.2)/k_r with k_r 2.25 k_n (mu_r R_r)^2,
+    // 5e-5 rad, which is 1.3e-7 m.
+    const double angle = spin * n * 2.5e-4;
+    ASSERT_NEAR(grains.store().position[0].x() - centre.x(), arm * std::sin(angle), 5e-7) << n;
+    ASSERT_NEAR(grains.store().angular_velocity[0].y(), spin, 0.01 * spin) << n;
+  }
+}
+
 TEST(Solids, RefuseGrainsInThem) {
   const Solid block = solid_of(thalweg::test::box_mesh(Vec3(0.01, 0.01, 0.01), Vec3(0.04, 0.04, 0.03)));
   const auto refusal = [&](const Vec3& at) -> std::string {
