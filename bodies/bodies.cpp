@@ -130,10 +130,10 @@ template <typename Real>
 void Bodies<Real>::move_solid(int solid, const SolidMotion& motion) {
   CHECK(solid >= 0 && solid < solids());
   settled_ = false;
-  move(slot_of_solid(solid), {motion.transform.centre, motion.velocity, motion.angular_velocity,
-                              motion.returned.density, motion.returned.slope, 0.0});
   const std::vector<InsideCell> before = solids_.inside(solid);
   solids_.move_to(solid, motion.transform);
+  move(slot_of_solid(solid), {solids_.centre(solid), motion.velocity, motion.angular_velocity, motion.returned.density,
+                              motion.returned.slope, 0.0});
   const std::vector<InsideCell>& now = solids_.inside(solid);
   std::vector<InsideCell> turned;
   std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(turned));

@@ -60,7 +60,7 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
     groups_[group_of_.back()].solids.push_back(count());
     at_start_.push_back(solid.moves ? solid.shape : SolidShape());
     const Extent extent = extent_of(solid.shape);
-    centres_.push_back(0.5 * (extent.lower + extent.upper));
+    centres_.push_back(box_.wrapped_from_afar(0.5 * (extent.lower + extent.upper)));
     present_.push_back(std::move(solid.shape));
   }
   for (Group& group : groups_) update(group);
@@ -70,7 +70,7 @@ void Solids::move_to(int solid, const RigidTransform& transform) {
   CHECK(solid >= 0 && solid < count() && moves(solid));
   const auto s = static_cast<std::size_t>(solid);
   move(at_start_[s], transform, present_[s]);
-  centres_[s] = transform.centre;
+  centres_[s] = box_.wrapped_from_afar(transform.centre);
   update(groups_[group_of_[s]]);
 }
 

@@ -49,7 +49,7 @@ public:
   int count() const { return static_cast<int>(present_.size()); }
   bool moves(int solid) const { return group_of_[static_cast<std::size_t>(solid)] != standing; }
   // Reference point of arms and motion: the middle of the extent of a solid at rest, the centre of the transform of a
-  // moving one.
+  // moving one, or its image inside the box, from which arms are taken to the nearest image however far it travels.
   const Vec3& centre(int solid) const { return centres_[static_cast<std::size_t>(solid)]; }
 
   // Moves a solid that moves, with its cells and distances, to a place.

@@ -17,7 +17,8 @@ constexpr double slack = 1e-9;     // of the box, by which a point may be off a 
 // Where a vertical line goes through a wall; none: nowhere, or it comes from beyond the wall.
 std::optional<double> height_of(const Plane& wall, const Vec3& line, const PeriodicBox& box) {
   if (std::abs(wall.normal.z()) < steepest || (!wall.plate && wall.normal.z() < 0.0)) return std::nullopt;
-  const Vec3 off = wall.plate ? box.difference(line, wall.point) : Vec3(line - wall.point);
+  // From the nearest image of a plate, however far it has travelled.
+  const Vec3 off = wall.plate ? box.difference(line, box.wrapped_from_afar(wall.point)) : Vec3(line - wall.point);
   const double height = wall.point.z() - off.head<2>().dot(wall.normal.head<2>()) / wall.normal.z();
   if (wall.plate && wall.seen_from(Vec3(line.x(), line.y(), height), box).distance > slack * box.size.maxCoeff())
     return std::nullopt;

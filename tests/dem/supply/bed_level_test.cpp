@@ -68,6 +68,21 @@ TEST(BedLevel, OfWalls) {
   }
 }
 
+// A tilted plate has the same level after it has travelled through the periodic box three and a half times.
+TEST(BedLevel, OfAPlateThatHasTravelledFar) {
+  Plane plate;  // 10 mm wide, 4 mm long across the slope, 15 mm high in the middle, 30 degrees upwards along x
+  plate.point = Vec3(0.01, 0.01, 0.015);
+  plate.normal = Vec3(-0.5, 0.0, std::sqrt(0.75));
+  plate.plate = PlateExtent{Vec3(std::sqrt(0.75), 0.0, 0.5), 0.005, 0.002};
+  plate.velocity = Vec3(0.14, -0.1, 0.0);  // m/s: by 3.5 boxes of 40 mm and 5 of 20 mm in a second
+  const Level level({plate.at(1.0, 1.0)}, {});
+  const double slope = std::sqrt(1.0 / 3.0);
+  EXPECT_NEAR(level.at(0.03, 0.01), 0.015, 1e-12);
+  EXPECT_NEAR(level.at(0.033, 0.0115), 0.015 + 0.003 * slope, 1e-12);
+  EXPECT_NEAR(level.at(0.027, 0.009), 0.015 - 0.003 * slope, 1e-12);
+  EXPECT_EQ(level.at(0.01, 0.01), 0.0);
+}
+
 TEST(BedLevel, OfSolids) {
   const Level step({},
                    {block({0.01, -0.005, -0.001}, {0.02, 0.025, 0.008}), block({0.01, 0, 0.03}, {0.02, 0.02, 0.04})});
