@@ -235,25 +235,32 @@ void GrainBodies<Real>::show_stresses() {
   for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
 }
 
-// Averages this exchange and those before it. For a light grain, the store holds the load of the step before.
+// Averages this exchange and those before it. For a light grain, the store holds the load of the step before; what is
+// filtered is the torque of one that may turn, although its place be held, and the force on one that may move. A force
+// on a member turns its clump as well.
 template <typename Real>
 void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque) {
   dem::GrainStore& store = grains_.store();
   const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
   const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
-  if (dem::holds_translation(store.motion[grain]) || !light_load_.concerns(mass, radius)) {
-    store.load_force[grain] = averaged_load(load_, force, kept.last_force(), kept.earlier_force());
-    store.load_torque[grain] = averaged_load(load_, torque, kept.last_torque(), kept.earlier_torque());
-    return;
-  }
+  const dem::Motion motion = store.motion[grain];
+  const bool is_light = light_load_.concerns(mass, radius), turns = !dem::holds_rotation(motion);
+  const bool force_moves = !dem::holds_translation(motion) || (dem::is_member(motion) && turns);
   const double share = light_load_.share(mass, radius);
-  const Vec3 body = grains_.body_force(grain);
-  const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
-  const Vec3 mean = averaged_load(LoadAveraging::mean, force, kept.last_force(), kept.earlier_force());
-  store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
-  store.load_torque[grain] =
-      LightLoad::filtered(store.load_torque[grain],
-                          averaged_load(LoadAveraging::mean, torque, kept.last_torque(), kept.earlier_torque()), share);
+  if (is_light && force_moves) {
+    const Vec3 body = grains_.body_force(grain);
+    const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+    const Vec3 mean = averaged_load(LoadAveraging::mean, force, kept.last_force(), kept.earlier_force());
+    store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
+  } else {
+    store.load_force[grain] = averaged_load(load_, force, kept.last_force(), kept.earlier_force());
+  }
+  if (is_light && turns) {
+    const Vec3 mean = averaged_load(LoadAveraging::mean, torque, kept.last_torque(), kept.earlier_torque());
+    store.load_torque[grain] = LightLoad::filtered(store.load_torque[grain], mean, share);
+  } else {
+    store.load_torque[grain] = averaged_load(load_, torque, kept.last_torque(), kept.earlier_torque());
+  }
 }
 
 template class GrainBodies<float>;
