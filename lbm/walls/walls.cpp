@@ -225,7 +225,8 @@ void Walls<Real>::save(ArchiveWriter& archive, const Decomposition& decompositio
   }
 }
 
-// A state that no sweep has left has no stress.
+// A state that no sweep has left has no stress. Fractions that do not follow the shear are those of this run's slip
+// length and viscosity, whatever the state's were.
 template <typename Real>
 void Walls<Real>::load(ArchiveReader& archive, const Decomposition& decomposition, const Block& block) {
   for (int face = 0; face < 6; ++face) {
@@ -235,7 +236,7 @@ void Walls<Real>::load(ArchiveReader& archive, const Decomposition& decompositio
       archive.read(state_name(face, n), stress_[face] ? stress_[face]->state(n) : std::span<Real>(), box);
       swept_ = true;
     }
-    if (!traits_of(faces_[face].type).slips()) continue;
+    if (!follows_shear(face)) continue;
     std::vector<Real> values(box.shape[0] * box.shape[1]);
     archive.read(std::string("fluid/bounced_fraction_") + face_names[face], std::span<Real>(values), box);
     std::size_t next = 0;
