@@ -36,12 +36,23 @@ void FlowControl::save(ArchiveWriter& archive) const {
   archive.attribute("fluid/flow_control_integral", integral_);
   archive.attribute("fluid/flow_control_force", force_);
   archive.attribute("fluid/flow_control_countdown", countdown_);
+  archive.attribute("fluid/flow_control_response_time", target_.response_time);
 }
 
 void FlowControl::load(ArchiveReader& archive) {
   integral_ = archive.real_attribute("fluid/flow_control_integral");
   force_ = archive.real_attribute("fluid/flow_control_force");
   countdown_ = archive.integer_attribute("fluid/flow_control_countdown");
+  if (!archive.has("fluid/flow_control_response_time")) return;  // older checkpoints have none: taken as the same
+  go_on_from(archive.real_attribute("fluid/flow_control_response_time"));
+}
+
+// With F = e/T + integral/(4 T^2) of both times.
+void FlowControl::go_on_from(double response_time) {
+  const double t = target_.response_time;
+  if (response_time == t) return;
+  const double proportional = force_ - integral_ / (4.0 * response_time * response_time);
+  integral_ = 4.0 * t * t * (force_ - proportional * response_time / t);
 }
 
 }  // namespace thalweg::lbm

@@ -39,9 +39,14 @@ public:
   static std::optional<double> saved_force(const ArchiveReader& archive);
 
   void save(ArchiveWriter& archive) const;
+  // Goes on with the force of a control with another response time.
   void load(ArchiveReader& archive);
 
 private:
+  // Brings the integral from another response time (steps) to this one, so that at the same error the force is the
+  // same.
+  void go_on_from(double response_time);
+
   FlowTarget target_;
   double integral_ = 0.0, force_ = 0.0;
   std::int64_t countdown_ = 0;

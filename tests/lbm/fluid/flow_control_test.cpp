@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 namespace thalweg::lbm::flow_control_test {
 namespace {
 
@@ -118,6 +120,39 @@ TEST(FlowControl, BeginsWithTheForceOfASavedFlow) {
   EXPECT_DOUBLE_EQ(halved.carried_force()[0], 0.5 * force);
   free.begin_control_of(reader, 1.0);
   EXPECT_EQ(free.parameters().force[0], 0.0);
+}
+
+// With another response time the force goes on from where it was, in a steady flow and in one that speeds up: over the
+// next interval the error falls by at most k F, which is k/T of F = e/T and more, and the integral adds k e/(4 T^2), a
+// quarter of that.
+TEST(FlowControl, GoesOnWithAnotherResponseTime) {
+  const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
+  const auto fluid_with = [&](double response_time) {
+    auto fluid = std::make_unique<Fluid<double>>(decomposition, MPI_COMM_SELF, viscous(), between_plates().faces);
+    fluid->control_flow({0, 0.01, response_time, 5});
+    return fluid;
+  };
+  for (const bool is_steady : {true, false}) {
+    const auto before = fluid_with(50.0);
+    for (int step = 0; step < (is_steady ? 20000 : 23); ++step) before->advance();
+    const test::MemoryArchive saved = test::saved(*before, MPI_COMM_SELF);
+    const double force = before->parameters().force[0];
+    for (const double response_time : {100.0, 60.0, 51.0}) {
+      const auto after = fluid_with(response_time);
+      test::load(*after, saved);
+      EXPECT_EQ(after->parameters().force[0], force);
+      for (int step = 0; step < 5; ++step) after->advance();
+      EXPECT_NEAR(after->parameters().force[0], force, (is_steady ? 1e-6 : 1.25 * 5.0 / 50.0) * force) << response_time;
+    }
+    // A saved state of an earlier version, which does not tell its response time.
+    test::MemoryArchive older = saved;
+    older.attributes.erase("fluid/flow_control_response_time");
+    const auto same = fluid_with(50.0), from_older = fluid_with(50.0);
+    test::load(*same, saved);
+    test::load(*from_older, older);
+    for (int step = 0; step < 20; ++step) same->advance(), from_older->advance();
+    EXPECT_EQ(test::first_difference(test::saved(*same, MPI_COMM_SELF), test::saved(*from_older, MPI_COMM_SELF)), "");
+  }
 }
 
 TEST(FlowControl, RefusesToRespondFasterThanItLooks) {
