@@ -12,10 +12,10 @@
 // adds its measured stress tau_top (Pa, on the fluid, along x):
 #pragma once
 
+#include "analysis/bed/bed_layers.hpp"
+#include "analysis/bed/static_pixels.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/observer/saved_settings.hpp"
-#include "analysis/tools/bed_layers.hpp"
-#include "analysis/tools/static_pixels.hpp"
 
 #include <mpi.h>
 

@@ -16,10 +16,10 @@
 // What is remembered, and which grains are watched, lies at the home of the grain's id (distribution_by_id.hpp).
 #pragma once
 
+#include "analysis/bed/bed_layers.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/observer/saved_settings.hpp"
 #include "analysis/observers/entrainment_event.hpp"
-#include "analysis/tools/bed_layers.hpp"
 #include "analysis/tools/bodies_here.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
 #include "analysis/tools/grain_ring.hpp"

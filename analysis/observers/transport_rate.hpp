@@ -15,10 +15,10 @@
 #include "analysis/observer/mean_observer.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "analysis/observer/transport_scales.hpp"
-#include "analysis/tools/correlated_mean.hpp"
-#include "analysis/tools/histogram.hpp"
+#include "analysis/statistics/correlated_mean.hpp"
+#include "analysis/statistics/histogram.hpp"
+#include "analysis/statistics/stationarity.hpp"
 #include "analysis/tools/hops.hpp"
-#include "analysis/tools/stationarity.hpp"
 
 #include <mpi.h>
 

@@ -1,5 +1,6 @@
 #include "analysis/reach/reach.hpp"
 
+#include "analysis/observer/mean_observer.hpp"
 #include "core/parallel/mpi_count.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/sums/reproducible_sum.hpp"

@@ -19,14 +19,14 @@
 // times (residence.hpp) count from the first look on.
 #pragma once
 
+#include "analysis/bed/static_pixels.hpp"
 #include "analysis/observer/saved_settings.hpp"
 #include "analysis/observer/transport_scales.hpp"
 #include "analysis/reach/grain_book.hpp"
 #include "analysis/reach/reach_keys.hpp"
 #include "analysis/reach/residence.hpp"
 #include "analysis/reach/sections.hpp"
-#include "analysis/tools/correlated_mean.hpp"
-#include "analysis/tools/static_pixels.hpp"
+#include "analysis/statistics/correlated_mean.hpp"
 
 #include <mpi.h>
 

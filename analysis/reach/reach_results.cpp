@@ -1,7 +1,7 @@
 // What Reach reports: numbers, words, profiles and records.
 #include "analysis/reach/reach.hpp"
 
-#include "analysis/tools/stationarity.hpp"
+#include "analysis/statistics/stationarity.hpp"
 #include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>

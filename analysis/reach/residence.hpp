@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/observer/observer.hpp"
-#include "analysis/tools/histogram.hpp"
+#include "analysis/statistics/histogram.hpp"
 
 #include <mpi.h>
 

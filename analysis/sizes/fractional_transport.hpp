@@ -22,7 +22,7 @@
 #include "analysis/observer/transport_scales.hpp"
 #include "analysis/sizes/grading.hpp"
 #include "analysis/sizes/plan_view.hpp"
-#include "analysis/tools/correlated_mean.hpp"
+#include "analysis/statistics/correlated_mean.hpp"
 
 #include <mpi.h>
 

@@ -13,8 +13,8 @@
 #pragma once
 
 #include "analysis/observer/observer.hpp"
+#include "analysis/statistics/histogram.hpp"
 #include "analysis/tools/distribution_by_id.hpp"
-#include "analysis/tools/histogram.hpp"
 #include "analysis/tools/way_between.hpp"
 #include "core/geometry/periodic_box.hpp"
 

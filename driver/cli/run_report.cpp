@@ -9,8 +9,8 @@
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/execution/final_bed.hpp"
-#include "driver/plan/case_warnings.hpp"
 #include "driver/setup/version.hpp"
+#include "driver/warnings/case_warnings.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
 

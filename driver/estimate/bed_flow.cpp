@@ -1,6 +1,6 @@
 #include "driver/estimate/bed_flow.hpp"
 
-#include "analysis/tools/bed_height.hpp"
+#include "analysis/bed/bed_height.hpp"
 #include "beds/packing/packing.hpp"
 #include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/grain_setup.hpp"

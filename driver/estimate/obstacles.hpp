@@ -7,7 +7,7 @@
 // A place where several overlap counts once. The bed is what is left, in the room that the obstacles leave.
 #pragma once
 
-#include "analysis/tools/union_of_spheres.hpp"
+#include "analysis/bed/union_of_spheres.hpp"
 #include "driver/case/case.hpp"
 
 #include <vector>

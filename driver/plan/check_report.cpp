@@ -20,10 +20,10 @@
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/solid_cells.hpp"
 #include "driver/estimate/supplied_grains.hpp"
-#include "driver/plan/case_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/initial_state.hpp"
+#include "driver/warnings/case_warnings.hpp"
 #include "io/files/json_object.hpp"
 #include "loop/progress.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/plan/unit_warnings.hpp"
+#include "driver/warnings/unit_warnings.hpp"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/input/case_reader.hpp"
-#include "driver/plan/case_warnings.hpp"
 #include "driver/plan/check_report.hpp"
 #include "driver/plan/solve.hpp"
+#include "driver/warnings/case_warnings.hpp"
 #include "io/files/atomic_file.hpp"
 #include "loop/progress.hpp"
 

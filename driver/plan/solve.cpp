@@ -1,7 +1,7 @@
 #include "driver/plan/solve.hpp"
 
 #include "core/base/shell_word.hpp"
-#include "driver/plan/case_warnings.hpp"
+#include "driver/warnings/case_warnings.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // `thalweg check --solve`: the few keys of a case to change so that no warning is left.
 #pragma once
 
-#include "driver/plan/remedy.hpp"
+#include "driver/warnings/remedy.hpp"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 """Means of correlated series, their error, and whether they are steady: the same numbers as the run itself gives
-(analysis/tools/correlated_mean.hpp, long_run_variance.hpp and stationarity.hpp; docs/theory.md section 5)."""
+(analysis/statistics/correlated_mean.hpp, long_run_variance.hpp and stationarity.hpp; docs/theory.md section 5)."""
 from typing import NamedTuple, Optional
 
 import numpy as np

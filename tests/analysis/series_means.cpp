@@ -1,6 +1,6 @@
 // Mean, error and trend of the numbers on the standard input, for a comparison with the same in Python: one a line,
 // mean, error, deviation, independent values, drift, its error, and the verdict as a sentence.
-#include "analysis/tools/stationarity.hpp"
+#include "analysis/statistics/stationarity.hpp"
 
 #include <fmt/format.h>
 

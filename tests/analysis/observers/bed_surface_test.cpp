@@ -1,6 +1,6 @@
 #include "analysis/observers/bed_surface.hpp"
 
-#include "analysis/tools/bed_height.hpp"
+#include "analysis/bed/bed_height.hpp"
 #include "core/base/counter_random.hpp"
 #include "tests/analysis/made_up_grains.hpp"
 #include "tests/support/memory_archive.hpp"

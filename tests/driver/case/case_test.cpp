@@ -2,7 +2,7 @@
 #include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/stability.hpp"
-#include "driver/plan/case_warnings.hpp"
+#include "driver/warnings/case_warnings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include "dem/laws/material.hpp"
 #include "driver/estimate/contact_estimate.hpp"
-#include "driver/plan/case_warnings.hpp"
-#include "driver/plan/remedy.hpp"
+#include "driver/warnings/case_warnings.hpp"
+#include "driver/warnings/remedy.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>

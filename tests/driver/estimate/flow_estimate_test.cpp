@@ -2,7 +2,7 @@
 
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
-#include "driver/plan/case_warnings.hpp"
+#include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/water_over_glass.hpp"
 

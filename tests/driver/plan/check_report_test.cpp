@@ -3,10 +3,10 @@
 #include "driver/cost/disk_space.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/bed_flow.hpp"
-#include "driver/plan/case_warnings.hpp"
-#include "driver/plan/contact_warnings.hpp"
 #include "driver/plan/flow_report.hpp"
-#include "driver/plan/remedy.hpp"
+#include "driver/warnings/case_warnings.hpp"
+#include "driver/warnings/contact_warnings.hpp"
+#include "driver/warnings/remedy.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/water_over_glass.hpp"
 

@@ -1,0 +1,88 @@
+#include "analysis/bed/bed_layers.hpp"
+
+#include "analysis/bed/union_of_spheres.hpp"
+#include "analysis/tools/sphere_in_layer.hpp"
+#include "core/parallel/ranks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace thalweg::analysis {
+
+namespace {
+
+// Volume of each clump over that of its members together, which may overlap.
+std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
+  std::map<GlobalId, double> shares;
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (grains.is_member(i)) shares[grains.clump[i]] += volume_of(grains.radius[i], grains.disk_thickness);
+  for (const ClumpState& clump : grains.clumps) shares.at(clump.id) = clump.volume / shares.at(clump.id);
+  return shares;
+}
+
+}  // namespace
+
+BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness,
+                     std::vector<GlobalId> obstacles)
+    : communicator_(communicator),
+      box_(box),
+      layers_(thin_layers(box.size.z(), window)),
+      thickness_(box.size.z() / layers_),
+      width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
+      obstacles_(std::move(obstacles)) {}
+
+BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
+  std::vector<double> grains = grains_below(snapshot), obstacles = obstacles_below(snapshot);
+  if (!obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count)
+    grains = std::exchange(obstacles, {});
+  const VolumeBelow below{grains, thickness_, box_.size.x() * width_, obstacles};
+  return {bed_height(below, thin_layers_a_window / 2), bulk_solid_fraction(below)};
+}
+
+bool BedLayers::is_obstacle(GlobalId id) const { return std::binary_search(obstacles_.begin(), obstacles_.end(), id); }
+
+std::vector<double> BedLayers::obstacles_below(const Snapshot& snapshot) const {
+  if (obstacles_.empty()) return {};
+  const GrainView& grains = snapshot.grains;
+  std::vector<SphereInBed> spheres;
+  for (std::size_t i = 0; i < grains.id.size(); ++i)
+    if (is_obstacle(grains.id[i])) {
+      const Vec3& centre = grains.position[i];
+      spheres.push_back({grains.id[i], {centre.x(), centre.y(), centre.z()}, grains.radius[i]});
+    }
+  spheres = Ranks(communicator_).gathered(std::move(spheres));
+  std::sort(spheres.begin(), spheres.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return union_below(box_, spheres, layers_);
+}
+
+std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
+  const std::vector<double> in_layer = reproducible_sums_by_bin(
+      communicator_, layers_, 1, [&, shares = shares_of_members(snapshot.grains)](const TermTaker& take) {
+        give_volumes(snapshot.grains, shares, take);
+      });
+  std::vector<double> below{0.0};
+  for (const double volume : in_layer) below.push_back(below.back() + volume);
+  return below;
+}
+
+// The volume of each grain in each layer.
+void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
+                             const TermTaker& take) const {
+  for (std::size_t i = 0; i < grains.id.size(); ++i) {
+    if (is_obstacle(grains.id[i])) continue;
+    const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
+    const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
+    const int first = static_cast<int>(std::floor(foot / thickness_));
+    const int last = static_cast<int>(std::floor((foot + 2.0 * radius) / thickness_));
+    for (int layer = std::max(0, first); layer <= std::min(layers_ - 1, last); ++layer) {
+      // The part of a grain beyond a wall belongs to the layer at the wall, so that no volume is lost.
+      const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
+      const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
+      const double volume = share * volume_between(radius, grains.disk_thickness, lower, upper);
+      take(layer, {&volume, 1});
+    }
+  }
+}
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,44 @@
+// The height of the bed in a snapshot, by thin layers of the box (bed_height.hpp).
+#pragma once
+
+#include "analysis/bed/bed_height.hpp"
+#include "core/geometry/periodic_box.hpp"
+#include "core/state/snapshot.hpp"
+#include "core/sums/reproducible_sum.hpp"
+
+#include <mpi.h>
+
+#include <map>
+#include <vector>
+
+namespace thalweg::analysis {
+
+class BedLayers {
+public:
+  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres. obstacles: the ids,
+  // ascending, of spheres that are no grains of the bed but stand in it; where there is nothing else, they are the bed.
+  BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0,
+            std::vector<GlobalId> obstacles = {});
+
+  struct Bed {
+    double height;          // m, above the floor of the box; 0 without grains
+    double solid_fraction;  // of the bulk
+  };
+  Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
+  double width() const { return width_; }   // m, of the bed
+
+private:
+  bool is_obstacle(GlobalId id) const;
+  std::vector<double> grains_below(const Snapshot& snapshot) const;
+  void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares, const TermTaker& take) const;
+  std::vector<double> obstacles_below(const Snapshot& snapshot) const;
+
+  MPI_Comm communicator_;
+  PeriodicBox box_;
+  int layers_;        // thin ones
+  double thickness_;  // m, of a thin layer
+  double width_;
+  std::vector<GlobalId> obstacles_;
+};
+
+}  // namespace thalweg::analysis

@@ -1,0 +1,114 @@
+#include "driver/warnings/boundary_warnings.hpp"
+
+#include "dem/motion/walls.hpp"
+#include "driver/case/axes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thalweg::driver {
+
+namespace {
+
+using lbm::FaceType;
+
+std::size_t opposite(std::size_t face) { return face ^ 1U; }
+
+// m/s, of the fluid that comes in through a velocity_inlet; negative: it leaves.
+double inflow(const Case& c, std::size_t face) {
+  const double along = c.domain.faces[face].velocity[static_cast<int>(face / 2)];
+  return face % 2 == 0 ? along : -along;
+}
+
+bool is(const Case& c, std::size_t face, FaceType type) { return c.domain.faces[face].type == type; }
+
+bool any(const Case& c, FaceType type) {
+  return std::any_of(c.domain.faces.begin(), c.domain.faces.end(),
+                     [type](const coupling::FaceKeys& face) { return face.type == type; });
+}
+
+// m^3/s, into the box through all velocity_inlets.
+double net_inflow(const Case& c) {
+  double net = 0.0;
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (is(c, face, FaceType::velocity_inlet))
+      net += inflow(c, face) * c.domain.size.prod() / c.domain.size[static_cast<int>(face / 2)];
+  return net;
+}
+
+std::string sucks(const Case& c, std::size_t face) {
+  const Vec3 reversed = -c.domain.faces[face].velocity;
+  const bool beside_an_inlet = is(c, opposite(face), FaceType::velocity_inlet) && inflow(c, opposite(face)) > 0.0;
+  return fmt::format(
+      "The velocity of the velocity_inlet {0} points out of the box, so that it takes fluid away: consider {1}.",
+      face_key(c.domain, face),
+      beside_an_inlet ? fmt::format("{}: pressure_outlet", face_key(c.domain, face))
+                      : fmt::format("{}.velocity: [{:g}, {:g}, {:g}]", face_key(c.domain, face), reversed.x() + 0.0,
+                                    reversed.y() + 0.0, reversed.z() + 0.0));
+}
+
+}  // namespace
+
+std::string face_key(const DomainCase& domain, std::size_t face) {
+  const bool by_axis = face < bottom && domain.faces[face] == domain.faces[opposite(face)];
+  return fmt::format("domain.boundaries.{}", by_axis ? axis_name[face / 2] : dem::face_names[face]);
+}
+
+Warnings swapped_floor(const Case& c) {
+  const coupling::FaceKeys floor = c.domain.faces[bottom], lid = c.domain.faces[top];
+  if (floor.type != FaceType::free_slip || !(lid.type == FaceType::no_slip || lid.type == FaceType::law_of_the_wall) ||
+      gravity_vector(c.gravity).z() >= 0.0)
+    return {};
+  const char* word = lid.type == FaceType::no_slip ? "no_slip" : "law_of_the_wall";
+  const Remedy swapped{
+      word_change("domain.boundaries.bottom", word, [lid](Case& other) { other.domain.faces[bottom] = lid; }),
+      word_change("domain.boundaries.top", "free_slip", [floor](Case& other) { other.domain.faces[top] = floor; })};
+  return {{fmt::format("The bottom is free_slip and the top {}, which look swapped: the flow slides over the floor and "
+                       "is held by the lid",
+                       word),
+           {{swapped, {}}},
+           "no_slip at the bottom and free_slip at the top"}};
+}
+
+Warnings inlets(const Case& c) {
+  Warnings found;
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
+    if (!is(c, face, FaceType::velocity_inlet)) continue;
+    if (inflow(c, face) < 0.0) found.push_back(sucks(c, face));
+    if (inflow(c, face) == 0.0)
+      found.push_back(
+          fmt::format("The velocity of the velocity_inlet {0} has no part into the box, so that no fluid comes in: "
+                      "consider another "
+                      "{0}.velocity in m/s, or {0}.type: moving.",
+                      face_key(c.domain, face)));
+  }
+  constexpr double rounding = 1e-6;  // of what comes in and leaves
+  double most = 0.0;
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (is(c, face, FaceType::velocity_inlet))
+      most =
+          std::max(most, std::abs(inflow(c, face)) * c.domain.size.prod() / c.domain.size[static_cast<int>(face / 2)]);
+  const double net = net_inflow(c);
+  if (!any(c, FaceType::pressure_outlet) && std::abs(net) > rounding * most)
+    found.push_back(fmt::format(
+        "A velocity_inlet {} the box and no face lets the fluid {}, so that its pressure {} without limit: consider a "
+        "pressure_outlet.",
+        net > 0.0 ? "fills" : "empties", net > 0.0 ? "out" : "in", net > 0.0 ? "rises" : "falls"));
+  return found;
+}
+
+Warnings outlets(const Case& c) {
+  Warnings found;
+  if (any(c, FaceType::velocity_inlet)) return found;
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (is(c, face, FaceType::pressure_outlet) && !is(c, opposite(face), FaceType::pressure_outlet))
+      found.push_back(fmt::format(
+          "Fluid may leave by the pressure_outlet {} and no face brings any in, so that none flows there: consider a "
+          "velocity_inlet opposite to it.",
+          face_key(c.domain, face)));
+  return found;
+}
+
+}  // namespace thalweg::driver

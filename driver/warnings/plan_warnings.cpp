@@ -1,0 +1,181 @@
+#include "driver/warnings/plan_warnings.hpp"
+
+#include "driver/case/limit_text.hpp"
+#include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/reference_grain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace thalweg::driver {
+
+namespace {
+
+// Nothing is written more often than once a step.
+Warnings frequent_output(const Case& c) {
+  Warnings found;
+  const double step = step_time(c);
+  const auto look = [&](const std::string& key, double every, const Setter& set) {
+    if (every > 0.0 && every < step * (1.0 - 1e-9))
+      found.push_back(
+          {fmt::format("output.{} = {:g} s is less than a step of {:.3g} s, so that it is written in every step", key,
+                       every, step),
+           {{{number_change("output." + key, step, 3, Rounding::up, set)}, {}}}});
+  };
+  look("series.every", c.output.series.every, [](Case& other, double to) { other.output.series.every = to; });
+  look("fluid.every", c.output.fluid.every, [](Case& other, double to) { other.output.fluid.every = to; });
+  look("grains.every", c.output.grains.every, [](Case& other, double to) { other.output.grains.every = to; });
+  look("checkpoint.every", c.output.checkpoint.every,
+       [](Case& other, double to) { other.output.checkpoint.every = to; });
+  return found;
+}
+
+Change until_change(double least) {
+  return number_change("run.until", least, 2, Rounding::up, [](Case& other, double to) { other.run.until = to; });
+}
+
+Warnings long_ramp(const Case& c) {
+  if (c.run.ramp <= c.run.until) return {};
+  const Change shorter = number_change("run.ramp", 0.5 * c.run.until, 2, Rounding::down,
+                                       [](Case& other, double to) { other.run.ramp = to; });
+  return {{fmt::format("Gravity rises until {:g} s and the run ends at {:g} s", c.run.ramp, c.run.until),
+           {{{shorter}, {}}, {{until_change(2.0 * c.run.ramp)}, {}}}}};
+}
+
+bool starts_developed(const Case& c) {
+  return c.initial.takes(InitialField::fluid) || c.initial.fluid.log_profile || c.initial.fluid.linear_profile;
+}
+
+// The log law that a turbulent flow under a free surface comes to.
+std::vector<Advice> developed_start(const Case& c, const FlowEstimate& flow) {
+  const bool suits =
+      flow.drive == FlowCause::slope || flow.drive == FlowCause::mean_velocity || flow.drive == FlowCause::inlet;
+  if (!suits || flow.laminar || c.domain.faces[top].drags() || c.initial.fluid.count() > 0) return {};
+  const Change start = word_change("initial.fluid.log_profile", "{}", [](Case& other) {
+    other.initial.fluid.log_profile.emplace();
+    other.filled_in.profile = {true, true, true};
+  });
+  return {{{start}, "a start near the developed flow, "}};
+}
+
+Warnings short_run(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none) return {};
+  if (starts_developed(c)) {
+    const double turnover = flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
+    if (c.run.until >= turnover) return {};
+    return {{fmt::format("The run ({:g} s) is shorter than one turnover of the largest eddies, H/u* = {:.2g} s",
+                         c.run.until, turnover),
+             {{{until_change(turnover)}, {}}},
+             "a later run.until"}};
+  }
+  if (c.run.until >= flow.spin_up) return {};
+  std::vector<Advice> advice{{{until_change(flow.spin_up)}, {}}};
+  for (const Advice& start : developed_start(c, flow)) advice.push_back(start);
+  return {{fmt::format("The run ({:g} s) is too short for the flow to develop, which takes about {:.2g} s from rest",
+                       c.run.until, flow.spin_up),
+           advice, "a later run.until or a developed start (initial)"}};
+}
+
+// s, from which on the flow is that of its drive: from rest once it has developed, from a profile after one turnover of
+// the largest eddies.
+double developed_after(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none || c.initial.takes(InitialField::fluid)) return 0.0;
+  if (!starts_developed(c)) return flow.spin_up;
+  return flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
+}
+
+Warnings early_averages(const Case& c) {
+  const double developed = developed_after(c);
+  if (developed >= c.run.until) return {};  // short_run() says so
+  Remedy later;
+  std::string early;
+  c.analysis.observers.for_each([&](const auto& keys) {
+    using Keys = typename std::decay_t<decltype(keys)>::value_type;
+    if constexpr (requires { keys->from; } && !std::is_same_v<Keys, analysis::EntrainmentKeys>) {  // events have times
+      if (!keys || keys->from >= developed * (1.0 - 1e-9)) return;
+      early += fmt::format("{}analysis.{}.from: {:g}", early.empty() ? "" : ", ", Keys::section, keys->from);
+      later.push_back(number_change(fmt::format("analysis.{}.from", Keys::section), developed, 2, Rounding::up,
+                                    [](Case& other, double to) { other.analysis.observers.of<Keys>()->from = to; }));
+    }
+  });
+  if (later.empty()) return {};
+  return {
+      {fmt::format("Averages begin before the flow has developed, which takes about {:.2g} s ({})", developed, early),
+       {{later, {}}},
+       "later ones and a longer run"}};
+}
+
+// Water at rest that an inlet sets going in the first step is a water hammer.
+Warnings sudden_inlet(const Case& c) {
+  const coupling::FaceKeys& inlet = c.domain.faces[x_low];
+  const bool at_rest = c.initial.fluid.count() == 0 && !c.initial.takes(InitialField::fluid);
+  if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains(c)) return {};
+  std::vector<Advice> advice = developed_start(c, flow_estimate(c));
+  const Vec3 v = inlet.velocity;
+  const Change uniform = word_change("initial.fluid.uniform", fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()),
+                                     [v](Case& other) { other.initial.fluid.uniform = v; });
+  if (advice.empty()) advice.push_back({{uniform}, {}});
+  return {
+      {fmt::format("The fluid starts at rest and the inlet sets it going at {:.3g} m/s within a step, an impact that "
+                   "throws the grains about",
+                   v.norm()),
+       advice, "a start with the velocity of the inlet"}};
+}
+
+// s, in which the highest grains of a population reach the bed.
+double settling_time(const Case& c, const beds::Population& grains) {
+  const double highest = grains.placement.region ? grains.placement.region->upper.z() : c.domain.size.z();
+  const double fall = std::max(0.0, highest - settled_height(c)), gravity = -gravity_vector(c.gravity).z();
+  if (!has_fluid(c)) return std::sqrt(2.0 * fall / gravity);
+  return fall /
+         settling_velocity(grains.diameter, grains.density / c.fluid.density, gravity, c.fluid.kinematic_viscosity);
+}
+
+Warnings unsettled_grains(const Case& c) {
+  const bool falls = gravity_vector(c.gravity).z() < 0.0 && !periodic_axes(c.domain)[2];
+  if (!(c.system == SystemKind::resolved || c.system == SystemKind::grains) || c.grains.empty() || !falls || c.disks ||
+      settled_height(c) < reference_grain(c).diameter)
+    return {};
+  double longest = 0.0;
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held() && !grains.from_file() && !c.initial.takes(InitialField::grains) &&
+        grains.placement.positions.empty() &&
+        (!has_fluid(c) || grains.density > (1.0 + neutral_density) * c.fluid.density))
+      longest = std::max(longest, settling_time(c, grains));
+  if (longest <= c.run.until) return {};
+  return {{fmt::format("The highest grains fall for about {:.2g} s, and the run ends before, at {:g} s", longest,
+                       c.run.until),
+           {{{until_change(longest)}, {}}},
+           "a later run.until"}};
+}
+
+Warnings other_start(const Case& c) {
+  const FlowEstimate flow = flow_estimate(c);
+  if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
+  const double given = *c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
+  constexpr double meant_to_be_slow = 0.25;  // in a run that is too short for the flow anyway
+  if ((flow.still_gaining && ratio < meant_to_be_slow) || (ratio >= 0.8 && ratio <= 1.25)) return {};
+  const Change start =
+      exact_change("initial.fluid.log_profile.shear_velocity", flow.friction_velocity, 3, [](Case& other, double to) {
+        other.initial.fluid.log_profile->shear_velocity = to;
+        other.filled_in.profile.shear_velocity = false;
+      });
+  return {{fmt::format("The flow starts with a shear velocity of {:.3g} m/s and is driven ({}) towards {:.3g} m/s",
+                       given, words_of(flow.drive), flow.friction_velocity),
+           {{{start}, {}}},
+           "a start with the shear velocity it is driven towards, and the step that suits it"}};
+}
+
+}  // namespace
+
+std::vector<WarningRule> plan_rules() {
+  return {short_run, early_averages, sudden_inlet, unsettled_grains, other_start, long_ramp, frequent_output};
+}
+
+}  // namespace thalweg::driver

@@ -1,0 +1,178 @@
+#include "driver/warnings/unit_warnings.hpp"
+
+#include "driver/estimate/reference_grain.hpp"
+#include "driver/warnings/boundary_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver {
+
+namespace {
+
+constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
+constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
+constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
+constexpr double widest_cell = 0.05;      // m
+constexpr double most_cells = 1e11, fewest_cells_across = 10.0;               // 1: of a box in metres
+constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;             // kg/m^3, m^2/s
+constexpr double least_in_centimetres = 900.0, most_in_centimetres = 1000.0;  // m/s^2
+constexpr int density_digits = 6;
+constexpr double steepest_friction = 60.0;  // degrees
+
+Warnings lengths_in_millimetres(const Case& c) {
+  if (c.grains.empty() || c.system != SystemKind::resolved) return {};
+  const double diameter = reference_grain(c).diameter;
+  if (diameter <= largest_boulder) return {};
+  return {
+      fmt::format("The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm are "
+                  "{:g} m.",
+                  diameter, diameter, 1e-3 * diameter)};
+}
+
+// A liquid in SI units in cells so wide: metres of it cannot be resolved.
+Warnings box_in_millimetres(const Case& c) {
+  if (!has_fluid(c) || c.domain.spacing < widest_cell || c.fluid.density < lightest_liquid ||
+      c.fluid.kinematic_viscosity > thickest_liquid)
+    return {};
+  return {fmt::format(
+      "The box of {:g} x {:g} x {:g} m has cells {:g} m wide, which looks like millimetres: lengths are in m, and "
+      "domain.spacing: {:g} mm is {:g} m.",
+      c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), c.domain.spacing, c.domain.spacing,
+      1e-3 * c.domain.spacing)};
+}
+
+// A box in millimetres of cells in metres: more than any machine holds, and enough of them a thousand times smaller.
+Warnings many_cells_in_millimetres(const Case& c) {
+  const Vec3 cells = c.domain.size / c.domain.spacing;
+  if (!has_fluid(c) || !box_in_millimetres(c).empty() || cells.prod() < most_cells ||
+      1e-3 * std::min(cells.x(), cells.y()) < fewest_cells_across)
+    return {};
+  return {fmt::format(
+      "The box of {:g} x {:g} x {:g} m has {:.2g} cells of {:g} m, which looks like millimetres: lengths are in m, and "
+      "domain.size: {:g} mm are {:g} m.",
+      c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), cells.prod(), c.domain.spacing, c.domain.size.x(),
+      1e-3 * c.domain.size.x())};
+}
+
+Warnings gravity_in_centimetres(const Case& c) {
+  const Vec3 gravity = gravity_vector(c.gravity);
+  if (gravity.norm() < least_in_centimetres || gravity.norm() > most_in_centimetres) return {};
+  const Change change = c.gravity.vector
+                            ? word_change("gravity.vector",
+                                          fmt::format("[{:.9g}, {:.9g}, {:.9g}]", gravity.x() / 100.0,
+                                                      gravity.y() / 100.0, gravity.z() / 100.0),
+                                          [gravity](Case& other) { other.gravity.vector = gravity / 100.0; })
+                            : exact_change("gravity.magnitude", gravity.norm() / 100.0, 6,
+                                           [](Case& other, double to) { other.gravity.magnitude = to; });
+  return {{fmt::format("Gravity of {:g} m/s^2 looks like {:g} cm/s^2, which are {:g} m/s^2", gravity.norm(),
+                       gravity.norm(), gravity.norm() / 100.0),
+           {{{change}, {}}},
+           "the value in m/s^2"}};
+}
+
+Warnings densities_in_grams(const Case& c) {
+  Warnings found;
+  if (c.system != SystemKind::resolved) return found;  // others may be dimensionless
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (const double density = c.grains[n].density; density < lightest_solid) {
+      Remedy remedy{exact_change(fmt::format("grains.{}.density", n), 1000.0 * density, density_digits,
+                                 [n](Case& other, double to) { other.grains[n].density = to; })};
+      if (c.fluid.density < lightest_solid)
+        remedy.push_back(exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
+                                      [](Case& other, double to) { other.fluid.density = to; }));
+      found.push_back({fmt::format("Grains of {:g} kg/m^3 (grains.{}) look like {:g} g/cm^3, which are {:g} kg/m^3",
+                                   density, n, density, 1000.0 * density),
+                       {{remedy, {}}}});
+    }
+  return found;
+}
+
+// Beside grains in kg/m^3. A gas so dense and with so little viscosity is under a pressure of tens of bars.
+Warnings liquid_in_grams(const Case& c) {
+  if (c.system != SystemKind::resolved || c.grains.empty() || reference_grain(c).density < lightest_grain ||
+      c.fluid.density > densest_gas || c.fluid.kinematic_viscosity > thinnest_gas)
+    return {};
+  return {{fmt::format("A fluid of {0:g} kg/m^3 with the viscosity of a liquid looks like one of {0:g} g/cm^3, which "
+                       "are {1:g} kg/m^3",
+                       c.fluid.density, 1000.0 * c.fluid.density),
+           {{{exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
+                           [](Case& other, double to) { other.fluid.density = to; })},
+             {}}}}};
+}
+
+Warnings slope_in_degrees(const Case& c) {
+  const double slope = c.gravity.vector ? 0.0 : std::abs(c.gravity.slope.value_or(0.0));
+  if (slope <= steepest_bed || slope > steepest_friction || !c.filled_in.flow.text.empty()) return {};
+  const double tangent = std::tan(*c.gravity.slope * std::numbers::pi / 180.0);
+  return {
+      {fmt::format("gravity.slope = {:g} is a bed at {:.3g} degrees, as the slope is the tangent of its angle; it "
+                   "looks like an angle in degrees",
+                   *c.gravity.slope, std::atan(slope) * 180.0 / std::numbers::pi),
+       {{{exact_change("gravity.slope", tangent, 3, [](Case& other, double to) { other.gravity.slope = to; })}, {}}}}};
+}
+
+// Angles in radians that are more than a turn.
+Warnings angles_in_degrees(const Case& c) {
+  Warnings found;
+  const auto look = [&](const std::string& key, double value, const Setter& set) {
+    if (std::abs(value) <= 2.0 * std::numbers::pi * (1.0 + 1e-6)) return;
+    const double angle = value * std::numbers::pi / 180.0;
+    found.push_back({fmt::format("{} = {:g} is in radians, {:.3g} turns, and looks like an angle in degrees", key,
+                                 value, value / (2.0 * std::numbers::pi)),
+                     {{{exact_change(key, angle, 6, set)}, {}}}});
+  };
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    if (c.grains[n].orientation)
+      look(fmt::format("grains.{}.orientation.angle", n), c.grains[n].orientation->angle,
+           [n](Case& other, double to) { other.grains[n].orientation->angle = to; });
+    if (c.grains[n].motion && c.grains[n].motion->oscillation)
+      look(fmt::format("grains.{}.motion.oscillation.phase", n), c.grains[n].motion->oscillation->phase,
+           [n](Case& other, double to) { other.grains[n].motion->oscillation->phase = to; });
+  }
+  for (std::size_t n = 0; n < c.solids.size(); ++n)
+    if (c.solids[n].motion && c.solids[n].motion->oscillation)
+      look(fmt::format("solids.{}.motion.oscillation.phase", n), c.solids[n].motion->oscillation->phase,
+           [n](Case& other, double to) { other.solids[n].motion->oscillation->phase = to; });
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (c.walls[n].oscillation)
+      look(fmt::format("walls.{}.oscillation.phase", n), c.walls[n].oscillation->phase,
+           [n](Case& other, double to) { other.walls[n].oscillation->phase = to; });
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (c.domain.faces[face].oscillation)
+      look(face_key(c.domain, face) + ".oscillation.phase", c.domain.faces[face].oscillation->phase,
+           [face](Case& other, double to) { other.domain.faces[face].oscillation->phase = to; });
+  return found;
+}
+
+Warnings friction_in_degrees(const Case& c) {
+  Warnings found;
+  const auto look = [&](const char* key, double value, const Setter& set) {
+    if (value <= roughest_contact || value > steepest_friction) return;
+    const double tangent = std::tan(value * std::numbers::pi / 180.0);
+    found.push_back({fmt::format("contact.{} = {:g} looks like an angle in degrees, and the coefficient is its tangent",
+                                 key, value),
+                     {{{exact_change(fmt::format("contact.{}", key), tangent, 3, set)}, {}}}});
+  };
+  if (c.grains.empty()) return found;
+  look("friction", c.contact.friction, [](Case& other, double to) { other.contact.friction = to; });
+  look("wall_friction", c.contact.wall_friction, [](Case& other, double to) { other.contact.wall_friction = to; });
+  return found;
+}
+
+}  // namespace
+
+bool has_other_lengths(const Case& c) {
+  return !lengths_in_millimetres(c).empty() || !box_in_millimetres(c).empty() || !many_cells_in_millimetres(c).empty();
+}
+
+std::vector<WarningRule> unit_rules() {
+  return {lengths_in_millimetres, box_in_millimetres,  many_cells_in_millimetres,
+          gravity_in_centimetres, densities_in_grams,  liquid_in_grams,
+          slope_in_degrees,       friction_in_degrees, angles_in_degrees};
+}
+
+}  // namespace thalweg::driver
