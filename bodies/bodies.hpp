@@ -78,6 +78,7 @@ public:
   void check_count(MPI_Comm communicator) const;
 
   int solids() const { return map_.solids(); }  // in the slots below this
+  const Solids& solid_shapes() const { return solids_; }
 
   const std::vector<MappedBody>& mapped() const { return map_.bodies(); }  // by slot; a free one has the id -1
   BodySlot slot_of(GlobalId id) const { return map_.slot_of(id); }         // none: not on this rank

@@ -59,11 +59,22 @@ Solids::Solids(const Decomposition& decomposition, const Block& block, const Cel
     if (solid.moves) groups_.emplace_back();
     groups_[group_of_.back()].solids.push_back(count());
     at_start_.push_back(solid.moves ? solid.shape : SolidShape());
-    const Extent extent = extent_of(solid.shape);
-    centres_.push_back(box_.wrapped_from_afar(0.5 * (extent.lower + extent.upper)));
     present_.push_back(std::move(solid.shape));
+    centres_.push_back(box_.wrapped_from_afar(middle(count() - 1)));
   }
   for (Group& group : groups_) update(group);
+}
+
+Vec3 Solids::middle(int solid) const {
+  const Extent extent = extent_of(present_[static_cast<std::size_t>(solid)]);
+  return 0.5 * (extent.lower + extent.upper);
+}
+
+Vec3 Solids::reference_on_axis(int solid, const Vec3& point, const Vec3& axis) const {
+  bool is_oblique = false;
+  for (int a = 0; a < 3; ++a)
+    is_oblique = is_oblique || (box_.periodic[a] && axis[a] != 0.0 && std::abs(axis[a]) != 1.0);
+  return is_oblique ? Vec3(point + axis.dot(middle(solid) - point) * axis) : point;
 }
 
 void Solids::move_to(int solid, const RigidTransform& transform) {

@@ -52,6 +52,12 @@ public:
   // moving one, or its image inside the box, from which arms are taken to the nearest image however far it travels.
   const Vec3& centre(int solid) const { return centres_[static_cast<std::size_t>(solid)]; }
 
+  // Middle of its extent, where it is given or has moved to, not brought into the box.
+  Vec3 middle(int solid) const;
+  // A point of the axis through a point from which arms to the solid can be taken to the nearest image: this one, or
+  // where the axis is oblique to one that is periodic the one nearest to the middle. axis: unit.
+  Vec3 reference_on_axis(int solid, const Vec3& point, const Vec3& axis) const;
+
   // Moves a solid that moves, with its cells and distances, to a place.
   void move_to(int solid, const RigidTransform& transform);
 

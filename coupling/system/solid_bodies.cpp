@@ -48,9 +48,10 @@ SolidBodies<Real>::SolidBodies(MPI_Comm communicator, bodies::Bodies<Real>& bodi
     const dem::PrescribedMotion& motion = motions[s];
     if (!motion.moves()) continue;
     const int solid = static_cast<int>(s);
-    const Vec3 pivot =
-        motion.turns() ? Vec3(motion.centre / units.spacing) : bodies.body(bodies::slot_of_solid(solid)).centre;
-    moving_.push_back({solid, motion, pivot, {}, {}});
+    const bodies::Solids& shapes = bodies.solid_shapes();
+    const Vec3 point = motion.turns() ? Vec3(motion.centre / units.spacing) : shapes.middle(solid);
+    const Vec3 pivot = motion.turns() ? shapes.reference_on_axis(solid, point, motion.axis) : point;
+    moving_.push_back({solid, motion, pivot, pivot - point, {}, {}});
   }
 }
 
@@ -105,6 +106,10 @@ typename SolidBodies<Real>::Loads SolidBodies<Real>::loads() const {
   Loads loads;
   for (const FixedVec3& force : all.forces) loads.forces.push_back(force.to_vec3());
   for (const FixedVec3& torque : all.torques) loads.torques.push_back(torque.to_vec3());
+  for (const Moving& m : moving_) {
+    const auto s = static_cast<std::size_t>(m.solid);
+    if (!m.from_point.isZero(0.0)) loads.torques[s] += m.from_point.cross(loads.forces[s]);
+  }
   return loads;
 }
 

@@ -49,7 +49,8 @@ private:
   struct Moving {
     int solid;
     dem::PrescribedMotion motion;
-    Vec3 pivot;  // lattice units
+    Vec3 pivot;       // of its motion and torque, lattice units
+    Vec3 from_point;  // to it from the point of the axis, lattice units
     bodies::MassDebt debt;
     bodies::MassReturn returned;
   };

@@ -164,6 +164,28 @@ TEST(MovingSolids, TurnAsTheyDidHoweverFarTheyTravel) {
   }
 }
 
+// An axis oblique to the periodic ones may be given by any of its points: forces and motion are the same, and torques
+// are about that point, T + r x F.
+TEST(MovingSolids, TurnAboutAnObliqueAxisWhateverItsPoint) {
+  const Vec3 centre(9.03e-3, 7.4e-3, 7.61e-3), velocity(0.2, 0.0, -0.1), axis = Vec3(0.6, 0.0, 0.8);
+  const auto load = [&](double along) {
+    WaterBox box;
+    box.cells = {20, 20, 20};
+    box.viscosity = 1e-5;
+    box.collision = lbm::CollisionModel::trt_at_bodies;
+    box.solids = {thalweg::test::sphere_mesh(centre, 2.5e-3, 3)};
+    box.solid_motions = {motion_of(velocity, centre + along * axis, 120.0 * axis)};
+    return mean_load(box, 60);
+  };
+  const Load near = load(0.0);
+  for (const double along : {9e-3, -0.025}) {  // m, in a box of 16 mm
+    const Load far = load(along);
+    const Vec3 expected = near.torque - along * axis.cross(near.force);
+    EXPECT_LT((far.force - near.force).norm(), 1e-6 * near.force.norm()) << along;
+    EXPECT_LT((far.torque - expected).norm(), 1e-6 * expected.norm()) << along;
+  }
+}
+
 // Two slabs of triangles: of the lower one, which slides in its own plane across the ends of the box, the profile is
 // that of a plate (linear interpolation is exact for it), and the drag that of the shear stress.
 TEST(MovingSolids, CouetteFlowOverASlidingSlabIsExact) {
