@@ -1,6 +1,7 @@
 #include "analysis/observers/entrainment.hpp"
 
 #include "analysis/observer/mean_observer.hpp"
+#include "analysis/tools/way_between.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/ranks.hpp"
 
@@ -97,7 +98,23 @@ std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot, const 
   return came;
 }
 
+// A grain that was away for a sample, or is farther from its place than it can have gone (way_between.hpp).
+bool Entrainment::has_come_in_anew(const GrainSample& last, const Seen& seen, double time) const {
+  if (!settings_.recirculation) return false;
+  const double duration = time - last.time;
+  constexpr double longest = 2.5;  // intervals: a sample is late by less than a step
+  if (duration > longest * settings_.interval) return true;
+  const Look before{last[GrainRecord::position], last[GrainRecord::velocity]},
+      now{seen.record[GrainRecord::position], seen.record[GrainRecord::velocity]};
+  const double fastest = std::max(before.velocity.norm(), now.velocity.norm());
+  return way_between(before, now, duration, box_).away > farthest_away(settings_.diameter, fastest, duration);
+}
+
 void Entrainment::remember(Memory& memory, const Seen& seen, double time) const {
+  if (!memory.ring.empty() && has_come_in_anew(memory.ring.back(), seen, time)) {
+    memory = Memory{};
+    memory.watched = true;
+  }
   memory.radius = seen.radius;
   memory.mass = seen.mass;
   GrainSample sample{time, seen.record, {}};

@@ -62,6 +62,7 @@ struct EntrainmentSettings : EntrainmentKeys {
   std::vector<HeldGrains> held;     // grains that cannot move
   std::vector<GlobalId> obstacles;  // ids, as in BedLayers
   bool clumps = false;              // there are some, or may be
+  bool recirculation = false;       // grains may be taken out of the box and put in elsewhere between two samples
   GrainContext::Force weight;       // submerged
   GrainContext::Force buoyancy;     // as in torques_about()
 };
@@ -133,6 +134,7 @@ private:
   void watch(std::span<const GlobalId> ids, std::vector<char> chosen);
   std::vector<GlobalId> take_samples(const Snapshot& snapshot, const BodiesHere& bodies);
   void remember(Memory& memory, const Seen& seen, double time) const;
+  bool has_come_in_anew(const GrainSample& last, const Seen& seen, double time) const;
   bool starts(Memory& memory) const;
   void count(const std::vector<GlobalId>& started, double time);
   std::vector<GrainRing> rings_on_first_rank(const std::vector<GlobalId>& started) const;

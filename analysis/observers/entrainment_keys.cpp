@@ -65,6 +65,7 @@ std::unique_ptr<Observer> make_observer(const EntrainmentKeys& keys, const RunCo
   settings.moving_speed = transport_scales(run).moving_speed();
   settings.held = run.grains->held();
   settings.clumps = run.grains->any_clumps();
+  settings.recirculation = run.grains->recirculation;
   settings.obstacles = run.grains->obstacles;
   settings.weight = run.grains->submerged_weight;
   settings.buoyancy = run.grains->buoyancy;

@@ -221,6 +221,27 @@ TEST(Entrainment, FollowsListedGrainsBeyondTheBoxAndRestsAnew) {
   EXPECT_NEAR(position[position.size() - 3], 20.01, 1e-12);  // 0.21 m from 19.8 m
 }
 
+// A grain at rest is put elsewhere by a sink, at once or after it was away. Where grains do not recirculate, it has
+// started.
+TEST(Entrainment, IsNotThatOfAGrainThatASinkPutsElsewhere) {
+  const auto entrainments = [](bool recirculation, int away) {
+    EntrainmentSettings s = settings({0});
+    s.recirculation = recirculation;
+    Entrainment observer(MPI_COMM_WORLD, made_up_box().box(), s);
+    for (int step = 0; step <= 200; ++step) {
+      const auto grain = [&](GlobalId) -> std::optional<MadeUpGrain> {
+        if (step >= 100 && step < 100 + away) return std::nullopt;
+        return MadeUpGrain{.position = Vec3(step < 100 ? 15.0 : 7.0, 5.0, 1.0)};
+      };
+      observer.observe(MadeUpGrains(MPI_COMM_WORLD, 1, grain, step).snapshot(0.01 * step));
+    }
+    return value_of(observer.diagnostics(), "entrainments");
+  };
+  EXPECT_EQ(entrainments(true, 0), 0.0);
+  EXPECT_EQ(entrainments(true, 50), 0.0);
+  EXPECT_EQ(entrainments(false, 0), 1.0);
+}
+
 void restart(Bed bed, const EntrainmentSettings& given) {
   const PeriodicBox box = bed.decomposition().box();
   Entrainment straight(MPI_COMM_WORLD, box, given), before(MPI_COMM_WORLD, box, given),
