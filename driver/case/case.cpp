@@ -77,6 +77,7 @@ double grain_time_step(const Case& c) {
 }
 
 double step_time(const Case& c) {
+  if (c.system == SystemKind::continuum) return *c.run.time_step;
   if (has_fluid(c)) return fluid_time_step(c);
   return grain_time_step(c) * static_cast<double>(grain_steps(c));
 }

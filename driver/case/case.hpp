@@ -212,10 +212,10 @@ Index3 cells_of(const DomainCase& domain);  // size over spacing
 // there is none within a fifth of it, the largest whole fraction of the present spacing.
 double spacing_below(const Case& c, double most);
 std::array<bool, 3> periodic_axes(const DomainCase& domain);
-double fluid_time_step(const Case& c);            // s
-std::int64_t grain_steps(const Case& c);          // sub-steps in a step of the fluid; of dry grains in one step_time()
-double grain_time_step(const Case& c);            // s: a sub-step, or the step of dry grains
-double step_time(const Case& c);                  // s: of the fluid, or as many steps of dry grains as make one
+double fluid_time_step(const Case& c);    // s
+std::int64_t grain_steps(const Case& c);  // sub-steps in a step of the fluid; of dry grains in one step_time()
+double grain_time_step(const Case& c);    // s: a sub-step, or the step of dry grains
+double step_time(const Case& c);          // s: of the fluid, as many steps of dry grains as make one, of a column
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // units of a run with a fluid
 double relaxation_time(const Case& c);            // BGK, without the subgrid model

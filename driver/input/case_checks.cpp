@@ -298,7 +298,7 @@ void check_open_faces(const Case& c, const io::YamlDocument& document) {
 
 // Times are multiples of the step in double precision.
 void check_number_of_steps(const Case& c, const io::YamlDocument& document) {
-  const double step = c.system == SystemKind::continuum ? *c.run.time_step : step_time(c);
+  const double step = step_time(c);
   if (c.run.until <= most_countable_steps * step) return;
   throw document.error("run.until",
                        fmt::format("the run would take {:.3g} steps of {:.3g} s, more than can be counted; "

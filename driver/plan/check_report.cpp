@@ -328,9 +328,8 @@ void refuse_impossible_grains(const Case& c) {
 
 namespace {
 
-// The report of a case with these warnings.
-Lines report_with(const Case& c, const Lines& found, double bandwidth) {
-  if (c.system == SystemKind::continuum) return column_report(c);
+// Report of a system of grains, fluid or both.
+Lines resolved_report(const Case& c, double bandwidth) {
   check_initial_sources(c);  // a restart may do without them, so reading a case does not ask
   refuse_impossible_grains(c);
   Lines lines{fmt::format("{} (system: {})", c.name, name_of(c.system))};
@@ -344,21 +343,25 @@ Lines report_with(const Case& c, const Lines& found, double bandwidth) {
   append(bed_lines(c), lines);
   add_model_fluid(c, lines);
   add_cost(c, bandwidth, lines);
+  return lines;
+}
+
+// The report of a case with these warnings.
+Lines report_with(const Case& c, const Lines& found, double bandwidth) {
+  Lines lines = c.system == SystemKind::continuum ? column_report(c) : resolved_report(c, bandwidth);
   for (const std::string& warning : found) lines.push_back("warning    " + warning);
   lines.push_back("verdict    " + verdict_text(c, found.size()));
   return lines;
 }
 
-Lines warnings_of(const Case& c) { return c.system == SystemKind::continuum ? Lines{} : warnings(c); }
-
 }  // namespace
 
 std::vector<std::string> check_report(const Case& c, double bandwidth) {
-  return report_with(c, warnings_of(c), bandwidth);
+  return report_with(c, warnings(c), bandwidth);
 }
 
 std::string check_json(const Case& c, double bandwidth) {
-  const Lines found = warnings_of(c), lines = report_with(c, found, bandwidth);
+  const Lines found = warnings(c), lines = report_with(c, found, bandwidth);
   io::JsonObject figures, units, all;
   const auto add = [&](const char* name, const char* unit, double value) {
     figures.set(name, value);

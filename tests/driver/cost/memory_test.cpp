@@ -80,7 +80,7 @@ TEST(Memory, OfMeasurementsOfEveryGrain) {
   EXPECT_LT(more, 400.0 * ids);
 }
 
-// Grains that are supplied and leave again take no room of their own, but their ids do.
+// Grains that are supplied and leave again take no room of their own, but their ids do: 72 bytes for hops.
 TEST(Memory, OfMeasurementsGrowsWithWhatIsSupplied) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.domain.size = Vec3(0.120, 0.040, 0.106);
@@ -94,7 +94,7 @@ TEST(Memory, OfMeasurementsGrowsWithWhatIsSupplied) {
   c.sinks.resize(1);
   EXPECT_NEAR(ids_of_run(c), rows + 8e5, 1.0);
   const double more = memory_of_observers(c).of_ids;
-  EXPECT_NEAR(more, 1.5 * 40.0 * ids_of_run(c), 0.01 * more);
+  EXPECT_NEAR(more, 1.5 * 72.0 * ids_of_run(c), 0.01 * more);
   supply.rate = 1e4;
   c.supplies.push_back(supply);  // ids of which most are not used
   EXPECT_NEAR(ids_of_run(c), rows + 1.6e6, 1.0);
