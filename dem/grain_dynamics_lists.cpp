@@ -39,7 +39,8 @@ GrainDynamics::Outlook GrainDynamics::look_ahead() {
   // loads accelerate it.
   double farthest = 0.0, fastest = largest_prescribed_speed();
   bool faulty = false;
-  const GrainValidity validity{GrainSpace(box_, planes_), parameters_.skin, step_time(), deep_in_solids()};
+  const GrainValidity validity{GrainSpace(box_, planes_), parameters_.skin, parameters_.time_step,
+                               parameters_.sub_steps, deep_in_solids()};
   for (std::size_t w = 0; w < planes_.size(); ++w)
     farthest = std::max(farthest, planes_[w].moved_since(listed_planes_[w]));
   for (std::size_t n = 0; n < solids_.size(); ++n)

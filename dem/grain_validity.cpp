@@ -42,7 +42,7 @@ GrainFault GrainValidity::fault_of(const GrainStore& store, std::size_t s, doubl
     if (space.deep_in_plate(x, radius)) return GrainFault::in_plate;
     if (std::binary_search(in_solids.begin(), in_solids.end(), s)) return GrainFault::in_solid;
   }
-  if (speed * step_time > radius) return GrainFault::too_fast;
+  if (speed * time_step * sub_steps > radius) return GrainFault::too_fast;
   return displacement > 0.5 * skin ? GrainFault::outran : GrainFault::none;
 }
 
@@ -71,8 +71,8 @@ void GrainValidity::throw_first(const GrainStore& store, const PeriodicBox& box,
       throw RunError(grain +
                      " is more than half its radius deep in a solid; use stiffer contacts, or less load or speed.");
     case GrainFault::too_fast:
-      throw RunError(fmt::format("{} moves more than its radius in one step of {:g} s; use a shorter time step.", grain,
-                                 step_time));
+      throw RunError(fmt::format("{} moves more than its radius in {} steps of {:g} s; use a shorter time step.", grain,
+                                 sub_steps, time_step));
     default:
       throw RunError(
           fmt::format("{} has moved more than half the skin of {:g} m since the neighbour list was built; use a "

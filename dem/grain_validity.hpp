@@ -18,7 +18,8 @@ enum class GrainFault { none, not_finite, outside, beyond_wall, in_plate, in_sol
 struct GrainValidity {
   GrainSpace space;
   double skin;                         // m, of the neighbour list: a grain may move half of it
-  double step_time;                    // s, of the caller's step, in which a grain may move its radius
+  double time_step;                    // s
+  int sub_steps;                       // in the caller's step, in which a grain may move its radius
   std::vector<std::size_t> in_solids;  // slots of grains that are half their radius deep in a solid, rising
 
   // displacement: m, since the neighbour list was built.
