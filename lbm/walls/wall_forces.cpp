@@ -7,21 +7,18 @@
 
 namespace thalweg::lbm {
 
-// A population out of the edge of two faces counts for the face whose rule it obeys, or for the first if both apply.
+// The axis across the other face of an edge that a population comes out of; -1: it comes out of this face alone.
 template <typename Real>
-int Walls<Real>::face_of_population(int face, int o, const Index3& at) const {
+int Walls<Real>::other_axis_of_edge(int face, int o, const Index3& at) const {
   const int axis = face / 2;
   for (const int other_axis : {first_axis(axis), second_axis(axis)}) {
     const int along = D3Q19::c[o][other_axis];
     if (along == 0) continue;
     const bool high = along < 0;
     const int end = high ? indexing_.size()[other_axis] - 1 : 0;
-    if (at[other_axis] != end || !present(other_axis, high)) continue;
-    const int other = face_of(other_axis, high);
-    if (decides_edge(face, other) && decides_edge(other, face)) return std::min(face, other);
-    return decides_edge(face, other) ? face : other;
+    if (at[other_axis] == end && present(other_axis, high)) return other_axis;
   }
-  return face;
+  return -1;
 }
 
 template <typename Real>
@@ -43,11 +40,13 @@ std::array<FixedVec3, 6> Walls<Real>::forces(const Populations<Real>& population
         for (at[1] = begin[1]; at[1] < end[1]; ++at[1])
           for (at[0] = begin[0]; at[0] < end[0]; ++at[0]) {
             const std::ptrdiff_t cell = indexing_.index(at[0], at[1], at[2]);
-            if (!cells.is_fluid(cell) || face_of_population(face, o, at) != face) continue;
+            if (!cells.is_fluid(cell)) continue;
             const std::int64_t lost = LatticeFixed::from(
                 static_cast<double>(populations.post_collision(D3Q19::opposite(o), cell)) +
                 static_cast<double>(populations.incoming(o, cell)) - 2.0 * D3Q19::weight(o) * reference);
-            const FixedVec3 force{-D3Q19::c[o][0] * lost, -D3Q19::c[o][1] * lost, -D3Q19::c[o][2] * lost};
+            const int other = other_axis_of_edge(face, o, at);
+            const auto along = [&](int a) { return a == other ? std::int64_t{0} : -D3Q19::c[o][a] * lost; };
+            const FixedVec3 force{along(0), along(1), along(2)};
             sums[face] += force;
             if (sides_by_height && axis != 2)
               (*sides_by_height)[static_cast<std::size_t>(2 * at[2] + 1 - D3Q19::c[o][2])] += force;

@@ -88,7 +88,8 @@ public:
   void apply(Populations<Real>& populations, const CellMap& cells, MPI_Comm communicator);
 
   // The momentum that each face takes from this rank's fluid in the next step, once apply() is done. Populations count
-  // as f - w (1 + reference), so that a fluid at rest with rho = 1 + reference exerts no force.
+  // as f - w (1 + reference), so that a fluid at rest with rho = 1 + reference exerts no force. A population out of the
+  // edge of two faces gives each the part of its momentum along the normal.
   // sides_by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which what the faces across x and
   // y take is added at the height half a link from its cell: entry h lies h half cells above the block's lower face.
   std::array<FixedVec3, 6> forces(const Populations<Real>& populations, const CellMap& cells, double reference,
@@ -148,7 +149,7 @@ private:
   Real from_edge(const Populations<Real>& populations, const IncomingDirection& incoming, std::ptrdiff_t cell,
                  int other) const;
   Real from_wall(const Populations<Real>& populations, const IncomingDirection& incoming, std::ptrdiff_t cell) const;
-  int face_of_population(int face, int direction, const Index3& at) const;
+  int other_axis_of_edge(int face, int direction, const Index3& at) const;
   bool has_stress(int face) const { return faces_[face].type == FaceType::law_of_the_wall; }
   bool follows_shear(int face) const;
   double bounced_fraction(int face, double shear_rate) const;

@@ -348,6 +348,29 @@ TEST(WallStress, IsThatOfNoSlipInASublayerThatIsResolved) {
         }
 }
 
+// A fluid at rest under a pressure p = delta/3 presses on each face of a closed box with p A, along the normal alone:
+// its rows at the edges press on both faces that meet there.
+TEST(WallForces, OfAFluidAtRestAreItsPressureAlongTheNormal) {
+  const Decomposition decomposition({5, 7, 6}, 1.0, {false, false, false}, {1, 1, 1});
+  const double delta = 0.01, area[3] = {7.0 * 6.0, 5.0 * 6.0, 5.0 * 7.0};
+  for (const FaceType sides : {FaceType::no_slip, FaceType::free_slip}) {
+    FaceConditions faces;
+    for (auto& face : faces) face.type = FaceType::no_slip;
+    faces[2].type = faces[3].type = sides;
+    CollisionParameters parameters;
+    parameters.relaxation_time = 0.8;
+    Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, faces);
+    fluid.initialise([&](const Vec3&) { return FluidState{delta, Vec3::Zero()}; });
+    for (int step = 0; step < 3; ++step) fluid.advance();
+    const std::array<Vec3, 6> forces = fluid.wall_forces();
+    for (int face = 0; face < 6; ++face) {
+      Vec3 expected = Vec3::Zero();
+      expected[face / 2] = (face % 2 == 0 ? -1.0 : 1.0) * delta / 3.0 * area[face / 2];
+      EXPECT_LT((forces[static_cast<std::size_t>(face)] - expected).norm(), 1e-10) << face;
+    }
+  }
+}
+
 // Under a force F each wall takes F h/2 in steady flow, whatever happens between them, and the fifth cell moves as the
 // law says for that stress: u_tau = 0.008, y+ = 12.
 TEST(WallStress, BalancesTheForceAtTheVelocityOfTheLaw) {
