@@ -18,7 +18,7 @@ from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import BEGUN, FAILED, name_of, short_keys
-from thalweg.sweep.tasks import BisectionTask, tasks_of
+from thalweg.sweep.tasks import BisectionTask, result_columns, tasks_of
 
 BISECT = {"key": "gravity.slope", "from": 0.0, "to": 1.0, "width": 0.2, "holds": "transport_rate.q_star_mean > 0.1"}
 
@@ -351,6 +351,34 @@ class Slurm(Folder):
         self.assertIn("--array=0-9\n", job)
         self.assertIn("/my sweep.yaml' --out", job)
         self.assertIn("--jobs 2 &\n", job)
+
+
+class Results(Folder):
+    """Columns and conditions, from summaries like those of runs."""
+    CONTINUUM = {"finished": True, "steps": 7, "system": "continuum", "phases": {"column": {"share": 0.9}},
+                 "figures": {"q_star": 0.081, "unsteadiness": 5e-5}, "largest": {"q_star": 0.09},
+                 "units": {"q_star": "1"}, "provenance": {"nodes": 1}}
+    RESOLVED = CONTINUUM | {"figures": {"largest_overlap": 0.01}, "bed": {"porosity": 0.4},
+                            "transport_rate": {"q_star_mean": 0.1, "steady": None}}
+
+    def columns(self, *summaries, **content):
+        runs = [unittest.mock.Mock(summary=summary) for summary in summaries]
+        return result_columns(self.plan(**content), runs)
+
+    def test_a_column_of_two_continua_has_its_figures(self):
+        self.assertEqual(self.columns(None, self.CONTINUUM), ["figures.q_star", "figures.unsteadiness"])
+        condition = self.plan(bisect=BISECT | {"holds": "figures.q_star > 0.05"}).bisections[0].condition
+        self.assertTrue(condition.holds(self.CONTINUUM))
+
+    def test_where_observers_measure_their_results_are_the_columns(self):
+        self.assertEqual(self.columns(self.RESOLVED, self.RESOLVED), ["bed.porosity", "transport_rate.q_star_mean"])
+        self.assertEqual(self.columns(self.RESOLVED, columns=["steps"]), ["steps"])
+
+    def test_a_result_without_its_section_is_told_where_it_is(self):
+        plan = self.plan(bisect=BISECT | {"holds": "q_star > 0.05"})
+        self.assertIn("no number q_star in summary.json, but figures.q_star.", plan.lacks(self.CONTINUUM))
+        self.assertIn("only finished, steps,", plan.lacks(self.RESOLVED))
+        self.assertIsNone(self.plan(bisect=BISECT).lacks(self.RESOLVED))
 
 
 class Units(unittest.TestCase):

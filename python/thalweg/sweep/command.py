@@ -10,7 +10,7 @@ from pathlib import Path
 
 from thalweg.case_file import read_case
 from thalweg.sweep.machine import memory_needed, runs_at_a_time
-from thalweg.sweep.plan import SweepError, figure_of, read_plan
+from thalweg.sweep.plan import SweepError, figure_of, meant_by, read_plan
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import DONE, FAILED, check_command, name_of
 from thalweg.sweep.tables import those_without_dimension, units_of_keys, write_tables
@@ -177,7 +177,9 @@ def written(plan, tasks, units, folder):
     done = [run.summary for run in runs if run.state == DONE]
     for column in plan.columns:
         if done and all(figure_of(summary, column) is None for summary in done):
-            print(f"thalweg: columns: no run has the number {column} in its summary.json.", file=sys.stderr)
+            there = meant_by(done[0], column)
+            print(f"thalweg: columns: no run has the number {column} in its summary.json{there and f', {there}'}.",
+                  file=sys.stderr)
     failed = [run for run in runs if run.state == FAILED]
     if failed:
         print(

@@ -16,6 +16,7 @@ from thalweg.sweep.inputs import SweepError, content_of, state_of
 KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
 BISECT_KEYS = {"key", "from", "to", "width", "spacing", "holds", "repeat", "share"}
 OPERATORS = {">": operator.gt, ">=": operator.ge, "<": operator.lt, "<=": operator.le}
+NO_RESULTS = ("phases", "largest", "units", "provenance")   # sections of summary.json
 ROUNDING = 1e-9   # relative: a time is a number of steps, and 1050 steps of 7e-4 s are not 0.735 s to the last bit
 
 
@@ -48,8 +49,8 @@ def found(summary, path):
     value = figure_of(summary, path)
     if value is None:
         section = summary.get(path.partition(".")[0])
-        there = ", ".join(section if isinstance(section, dict) else summary)
-        raise SweepError(f"bisect.holds: the runs have no number {path} in summary.json, only {there}.")
+        there = meant_by(summary, path) or f"only {', '.join(section if isinstance(section, dict) else summary)}"
+        raise SweepError(f"bisect.holds: the runs have no number {path} in summary.json, {there}.")
     return value
 
 
@@ -115,6 +116,20 @@ def figure_of(summary, path):
     for part in path.split("."):
         value = value.get(part) if isinstance(value, dict) else None
     return float(value) if isinstance(value, (int, float)) else None
+
+
+def result_paths(summary):
+    """Of all numbers in the sections of summary.json that hold results."""
+    return [f"{section}.{name}" for section, figures in summary.items()
+            if isinstance(figures, dict) and section not in NO_RESULTS
+            for name in figures if figure_of(figures, name) is not None]
+
+
+def meant_by(summary, path):
+    """The results that have the same name in any section, in words, e.g. those of figures.q_star for q_star."""
+    name = path.rpartition(".")[2]
+    found_there = [other for other in result_paths(summary) if other.endswith(f".{name}")]
+    return f"but {' and '.join(found_there)}" if found_there else ""
 
 
 def read_plan(path):

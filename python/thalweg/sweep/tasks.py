@@ -2,7 +2,7 @@
 one point, and independent of the others."""
 import math
 
-from thalweg.sweep.plan import figure_of
+from thalweg.sweep.plan import result_paths
 from thalweg.sweep.runs import DONE, SweepRun, name_of, names_in
 
 
@@ -132,12 +132,9 @@ def known_runs(tasks):
 
 
 def result_columns(plan, runs):
-    """Paths in summary.json: those the plan names, else all that the observers of any run have measured."""
+    """Paths in summary.json: those the plan names, else all that the observers of any run have measured, else the
+    figures of the last state, which are all that a column of two continua has."""
     if plan.columns:
         return plan.columns
-    columns = {}
-    for run in runs:
-        for section, figures in (run.summary or {}).items():
-            if isinstance(figures, dict) and section not in ("phases", "largest", "units", "figures", "provenance"):
-                columns |= {f"{section}.{name}": None for name in figures if figure_of(figures, name) is not None}
-    return list(columns)
+    columns = list(dict.fromkeys(path for run in runs for path in result_paths(run.summary or {})))
+    return [column for column in columns if not column.startswith("figures.")] or columns
