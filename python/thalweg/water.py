@@ -8,6 +8,7 @@ from thalweg.errors import RunFolderError
 VON_KARMAN, INTERCEPT, SUBLAYER = 0.41, 5.0, 10.8   # u+ = ln(y+)/kappa + B beyond y+ = 10.8, u+ = y+ below
 SMALLEST_HALF_WIDTH = 100.0   # in wall units: narrower flows are not turbulent
 FAR = 2.0                     # widths above the bed, where the side walls alone hold the water back
+SMOOTH_WALLS = ("no_slip", "law_of_the_wall", "slip_law_of_the_wall")   # at rest, where the law of the wall holds
 
 
 class Speeds(NamedTuple):
@@ -29,13 +30,14 @@ def law_of_the_wall(distance, friction_velocity, viscosity):
 
 def expected_speeds(run):
     """Speeds between side walls that carry all of the water's weight along the slope, far above the bed (Zhang et al.
-    2022, app. A): friction velocity sqrt(g_x W/2). None without such walls, or where that flow would not be
-    turbulent."""
-    along = run.gravity[0]
-    if run.side_walls < 2 or not along > 0.0:
+    2022, app. A): friction velocity sqrt(g_x W/2). None where anything else drives the water or holds it (a mean
+    velocity, an inlet, a top that moves or drags, solids, walls that move or slip by a length), and where that flow
+    would not be turbulent."""
+    smooth_walls = all(face in SMOOTH_WALLS for face in run.faces("y"))
+    if not smooth_walls or not run.driven_by_slope or run.case.get("solids"):
         return None
     half, viscosity = 0.5 * run.size[1], run.case["fluid"]["kinematic_viscosity"]
-    friction_velocity = np.sqrt(along * half)
+    friction_velocity = np.sqrt(run.gravity[0] * half)
     if friction_velocity * half / viscosity < SMALLEST_HALF_WIDTH:
         return None
     across = (np.arange(1000) + 0.5) / 1000 * half

@@ -9,13 +9,13 @@ import numpy as np
 import made_up_folder as made_up
 import thalweg
 from thalweg import __main__ as program
-from thalweg.report import report_of, window
+from thalweg.report import Report, describe_water, report_of, window
 from thalweg.tables import read_series
 
 D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
 
 
-class Report(made_up.MadeUpFolder):
+class Reports(made_up.MadeUpFolder):
     def setUp(self):
         super().setUp()
         few = unittest.mock.patch("thalweg.report.VISIBLE_FRAMES", 2)   # each is looked at pixel by pixel
@@ -147,6 +147,24 @@ class Report(made_up.MadeUpFolder):
             self.assertAlmostEqual(found["middle_speed"], middle, 9)
             self.assertAlmostEqual(found["mean_speed"], shape.mean(), 9)
             self.assertTrue(any(line.startswith("water") and "(+0.0 %)" in line for line in report.lines))
+
+    def test_water_that_the_slope_and_the_side_walls_alone_do_not_rule_is_not_compared(self):
+        self.write_water(np.array([0.8, 1.0, 0.8]))
+        inlet = "x_low: {type: velocity_inlet, velocity: [0.5, 0, 0]}, x_high: pressure_outlet"
+        wall, top = "type: law_of_the_wall", "top: free_slip"
+        for what, instead, compared in (
+            (wall, wall, True), (wall, "type: no_slip", True), (wall, "type: slip_law_of_the_wall", True),
+            (wall, "type: free_slip", False), (wall, "type: moving, velocity: [0.5, 0, 0]", False),
+            (wall, "type: navier_slip, slip_length: 1e-3", False), (top, "top: no_slip", False),
+            (top, "top: {type: moving, velocity: [0.5, 0, 0]}", False), ("slope: 0.0748", "slope: 0.0", False),
+            ("x: periodic", inlet, False), ("x: periodic", "x: no_slip", False),
+            ("fluid: {", "fluid: {mean_velocity: {velocity: 0.5, response_time: 0.1}, ", False),
+            ("analysis:", "solids: [{stl: pier.stl}]\nanalysis:", False),
+        ):
+            (self.folder / "case.yaml").write_text(made_up.CASE.replace(what, instead))
+            report = Report(thalweg.Run(self.folder))
+            describe_water(report, 0.05)
+            self.assertEqual(("water" in report.numbers, len(report.lines)), (compared, int(compared)), instead)
 
     def test_a_mean_from_the_start_on_and_none_at_all(self):
         case = self.folder / "case.yaml"
