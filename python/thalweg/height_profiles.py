@@ -46,7 +46,7 @@ def fluid_velocity(run):
 
 def driving_stress(run, z, fraction):
     """Pa at the middles z (m) of the layers: g_x times the mass of water and grains above."""
-    density = run.case["fluid"]["density"] * (1.0 - fraction + run.density_ratio * fraction)
+    density = run.section("fluid")["density"] * (1.0 - fraction + run.density_ratio * fraction)
     weight = density * run.gravity[0] * (z[1] - z[0])
     return np.cumsum(weight[::-1])[::-1] - 0.5 * weight
 
@@ -83,7 +83,7 @@ def stresses(run):
     if "fluid_statistics" in run.profiles:
         fluid = run.profiles["fluid_statistics"]
         share = 1.0 - np.interp(fluid["z"], z, fraction)
-        reynolds = -run.case["fluid"]["density"] * share * component(fluid, "reynolds_stress", "xz")
+        reynolds = -run.section("fluid")["density"] * share * component(fluid, "reynolds_stress", "xz")
         found.append(("fluid: resolved eddies", fluid["z"], reynolds))
     if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
         frames = layer_profiles(run, start=run.averaged_from("grain_profiles"))
@@ -97,7 +97,7 @@ def weight_of_water(run):
     if not run.driven_by_slope or not run.gravity[0] > 0.0:
         return None
     z = np.array([0.0, run.size[2]])
-    return z, run.case["fluid"]["density"] * run.gravity[0] * (run.size[2] - z)
+    return z, run.section("fluid")["density"] * run.gravity[0] * (run.size[2] - z)
 
 
 def style_of(label):

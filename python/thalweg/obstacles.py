@@ -25,7 +25,7 @@ def distance(run, there, here):
 def fixed_by_position(run, frame):
     """Which grains of a frame the case fixes at positions."""
     found = np.zeros(len(frame), bool)
-    for population in run.case["grains"]:
+    for population in run.section("grains"):
         places = (population.get("placement") or {}).get("positions") or ()
         for place in places if population.get("fixed") else ():
             away = distance(run, frame.position, place)

@@ -14,6 +14,7 @@ import numpy as np
 from thalweg import bed, sizes, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
+from thalweg.means import mean_with_error
 from thalweg.transport import column_of, transport
 from thalweg.visible_profiles import visible_profiles
 
@@ -188,12 +189,34 @@ def describe_camera(report):
     report.profiles["visible_grains"] = visible_profiles(run, report.start, report.stop, most_frames=VISIBLE_FRAMES)
 
 
-def report_of(run, start=None, stop=None):
-    """Report of a run between two times (s); see window() for what counts where none are given."""
-    report = Report(run, start, stop)
-    report.say("run", f"{run.name}: {report.start:g} to {report.stop:g} s of {run.series['time'][-1]:g} s")
-    if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
-        report.say("window", "shorter than wanted: series.csv has no rows of the rest")
+def describe_column(report):
+    """A column of two continua changes until it is steady: what counts is its state at the end of the time wanted."""
+    series = report.run.series
+    row = int(np.flatnonzero(series["time"] <= report.stop + 1e-9)[-1])
+    state = {name: float(series[name][row]) for name in series}
+    report.numbers = {"from": state["time"], "until": state["time"], "continuum": state}
+    unsteadiness = f"unsteadiness {state['unsteadiness']:.2g}"
+    report.say("transport", f"q* = {state['q_star']:.4g} at {state['time']:g} s, {unsteadiness}")
+    report.say("surface", f"at {state['surface_height']:.4g} m, {1e3 * state['moving_depth']:.3g} mm of grains in "
+               f"motion: Shields number {state['shields_number']:.4g}")
+
+
+def describe_flow(report):
+    """Of a fluid without grains."""
+    series = report.run.series
+    if "mean_velocity_x" not in series:
+        raise RunFolderError(f"{report.run.folder / 'series.csv'}: it has no column mean_velocity_x.")
+    speeds = series["mean_velocity_x"][bed.rows_between(report.run, report.start, report.stop)]
+    mean = mean_with_error(speeds)
+    report.numbers["mean_velocity_x"] = mean._asdict()
+    known = f" +- {mean.error:.2g}" if math.isfinite(mean.error) else ""
+    few = "" if mean.error_holds else " (too few values, the error is larger)"
+    report.say("flow", f"mean velocity {mean.mean:.4g}{known} m/s along x{few}")
+    report.attempt("water", lambda: describe_water(report, 0.0))
+
+
+def describe_sediment(report):
+    run = report.run
     report.attempt("transport", lambda: describe_transport(report))
     if "fractional_transport" in (run.case.get("analysis") or {}):
         report.attempt("sizes", lambda: describe_sizes(report))
@@ -202,4 +225,19 @@ def report_of(run, start=None, stop=None):
     report.attempt("surface", lambda: describe_profiles(report))
     if run.case.get("fluid"):
         report.attempt("static", lambda: describe_camera(report))
+
+
+def report_of(run, start=None, stop=None):
+    """Report of a run between two times (s); see window() for what counts where none are given."""
+    report = Report(run, start, stop)
+    times = f"{report.stop:g}" if run.system == "continuum" else f"{report.start:g} to {report.stop:g}"
+    report.say("run", f"{run.name}: {times} s of {run.series['time'][-1]:g} s")
+    if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
+        report.say("window", "shorter than wanted: series.csv has no rows of the rest")
+    if run.system == "continuum":
+        report.attempt("transport", lambda: describe_column(report))
+    elif run.system == "fluid":
+        report.attempt("flow", lambda: describe_flow(report))
+    else:
+        describe_sediment(report)
     return report

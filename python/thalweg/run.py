@@ -104,7 +104,7 @@ class Run:
         (`analysis.probes`), with `time` (s) and `position` (m) [point, axis], the centres of the cells, each read when
         it is asked for. RunFolderError where none are recorded."""
         parts = self._recorded("probes")
-        return Probes(parts, float(self.case["domain"]["spacing"]))
+        return Probes(parts, float(self.section("domain")["spacing"]))
 
     @cached_property
     def reach(self):
@@ -164,13 +164,27 @@ class Run:
         return self.case.get("name") or self.folder.name
 
     @property
+    def system(self):
+        """What was run: resolved, fluid, grains, model_fluid or continuum."""
+        return self.case.get("system", "resolved")
+
+    def section(self, name):
+        """A section of the case, such as `grains`; RunFolderError where what was run has none."""
+        found = self.case.get(name)
+        if found is None:
+            raise RunFolderError(
+                f"{self.folder}: a run of system: {self.system} has no {'box' if name == 'domain' else name}."
+            )
+        return found
+
+    @property
     def size(self):
-        """Size (m) of the box along x, y, z."""
-        return np.array(self.case["domain"]["size"], float)
+        """Size (m) of the box along x, y, z; RunFolderError where there is none."""
+        return np.array(self.section("domain")["size"], float)
 
     def faces(self, axis):
         """Types of the two faces across x, y or z ("x", "y", "z"), of which "periodic" comes twice."""
-        boundaries = self.case["domain"].get("boundaries", {})
+        boundaries = self.section("domain").get("boundaries", {})
         both = face_type(boundaries.get(axis))
         names = ("bottom", "top") if axis == "z" else (f"{axis}_low", f"{axis}_high")
         return tuple(face_type(boundaries.get(name)) or both for name in names)
@@ -187,8 +201,9 @@ class Run:
 
     @property
     def free_populations(self):
-        """Populations of the case that are free to move, or all where none is."""
-        populations = self.case["grains"]
+        """Populations of the case that are free to move, or all where none is; RunFolderError where there are no
+        grains."""
+        populations = self.section("grains")
         if isinstance(populations, dict):   # of a continuum
             return [populations]
         held = ("fixed", "prescribed_velocity", "motion")
@@ -237,12 +252,12 @@ class Run:
             ]
             densities = [grains["density"] for grains in populations] or [self.free_populations[0]["density"]]
             density = float(np.average(densities, weights=volumes))
-        return density / self.case["fluid"]["density"]
+        return density / self.section("fluid")["density"]
 
     @property
     def gravity(self):
         """m/s^2, along x, y, z."""
-        gravity = self.case["gravity"]
+        gravity = self.section("gravity")
         if "vector" in gravity:
             return np.array(gravity["vector"], float)
         angle = np.arctan(gravity.get("slope", 0.0))

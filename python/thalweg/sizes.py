@@ -42,7 +42,7 @@ class Sizes:
         """m/s, of the mean stress on the bed that the run has measured (`analysis.bed_surface`); None where it has
         none."""
         stress = ((self.run.summary or {}).get("bed_surface") or {}).get("bed_stress_mean")
-        return math.sqrt(stress / self.run.case["fluid"]["density"]) if stress and stress > 0.0 else None
+        return math.sqrt(stress / self.run.section("fluid")["density"]) if stress and stress > 0.0 else None
 
     def w_star(self):
         """W*_i = (s - 1) g q_si / (F_i u_*^3) of each class, F_i its share of the surface (Wilcock and Crowe 2003, eq.
@@ -50,7 +50,7 @@ class Sizes:
         velocity = self.shear_velocity()
         if velocity is None:
             return None
-        weight = (self.density / self.run.case["fluid"]["density"] - 1.0) * float(np.linalg.norm(self.run.gravity))
+        weight = (self.density / self.run.section("fluid")["density"] - 1.0) * float(np.linalg.norm(self.run.gravity))
         with np.errstate(invalid="ignore", divide="ignore"):
             return weight * self.q_s / (self.surface_share * velocity**3)
 

@@ -44,7 +44,7 @@ def resolved_bed(run):
                              "(analysis.stress_balance in the case; written with every checkpoint).")
     layers = run.profiles["stress_balance"]
     z, phi, diameter = layers["z"], layers["solid_fraction"], run.diameter
-    stress, fluid = solid_stress(layers), run.case["fluid"]
+    stress, fluid = solid_stress(layers), run.section("fluid")
     velocity = layers["grain_velocity"][:, 0]
     viscosity = float(fluid["density"]) * float(fluid["kinematic_viscosity"])
     state = flow_state(phi, stress, np.gradient(velocity, z), diameter, run.density_ratio * float(fluid["density"]),
@@ -70,8 +70,8 @@ def decay_length(height, velocity):
 def different_materials(run, column):
     """What two runs should share and do not, as text; empty if they are the same."""
     def values(of):
-        material, fluid = of.free_populations[0], of.case["fluid"]
-        return {"slope": of.case["gravity"].get("slope"), "diameter of the grains": material["diameter"],
+        material, fluid = of.free_populations[0], of.section("fluid")
+        return {"slope": of.section("gravity").get("slope"), "diameter of the grains": material["diameter"],
                 "density of the grains": material["density"], "kinematic viscosity": fluid["kinematic_viscosity"]}
     one, other = values(run), values(column)
     return ", ".join(

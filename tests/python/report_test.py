@@ -1,4 +1,6 @@
 """`thalweg analyze` on a folder whose answers are known."""
+import contextlib
+import io
 import json
 import unittest
 import unittest.mock
@@ -217,6 +219,49 @@ class Reports(made_up.MadeUpFolder):
         numbers = json.loads((self.folder / "analysis" / "summary.json").read_text())
         self.assertEqual(numbers["from"], 2.0)
         self.assertEqual(program.main(["analyze", str(self.folder / "elsewhere")]), 2)
+
+
+class OtherSystems(made_up.MadeUpFolder):
+    def write(self, case, table):
+        (self.folder / "case.yaml").write_text(case)
+        (self.folder / "series.csv").write_text(table)
+
+    def refusal(self, *arguments):
+        """What the command says on its way out with exit code 2."""
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            self.assertEqual(program.main([*arguments, str(self.folder)]), 2)
+        return said.getvalue()
+
+    def test_a_column_of_two_continua_is_told_by_its_last_state(self):
+        self.write("system: continuum\nname: Column\nfluid: {density: 1000}\ngrains: {diameter: 5e-3, density: 2550}\n"
+                   "gravity: {magnitude: 9.8, slope: 0.016}\n",
+                   "time [s],q_star [1],shields_number [1],surface_height [m],moving_depth [m],unsteadiness [1]\n"
+                   "0,0,0.085,0.025,0,1\n5,0.06,0.087,0.024,1e-3,1\n10,0.08,0.088,0.023,2e-3,1e-5\n")
+        report = report_of(thalweg.Run(self.folder))
+        self.assertEqual(report.numbers["continuum"]["q_star"], 0.08)
+        self.assertTrue(any("q* = 0.08 at 10 s" in line for line in report.lines))
+        self.assertTrue(any("2 mm of grains in motion: Shields number 0.088" in line for line in report.lines))
+        earlier = report_of(thalweg.Run(self.folder), stop=7.0).numbers
+        self.assertEqual((earlier["until"], earlier["continuum"]["q_star"]), (5.0, 0.06))
+        for kind in ("relation", "visible"):
+            self.assertIn("a run of system: continuum has no box.", self.refusal("plot", kind))
+
+    def test_a_fluid_is_told_by_its_mean_velocity(self):
+        self.write("system: fluid\nname: Water\ndomain: {size: [0.1, 0.1, 0.1], spacing: 1e-3,\n"
+                   "  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}}\n"
+                   "fluid: {density: 1000, kinematic_viscosity: 1e-6}\n"
+                   "gravity: {magnitude: 9.8, slope: 0.01}\n",
+                   "time [s],mean_velocity_x [m/s]\n" + "".join(f"{n},{0.3 + 0.1 * (-1) ** n}\n" for n in range(11)))
+        report = report_of(thalweg.Run(self.folder), 1.0, 10.0)   # ten rows, half of them 0.2 and half 0.4
+        self.assertAlmostEqual(report.numbers["mean_velocity_x"]["mean"], 0.3, 12)
+        self.assertTrue(any("mean velocity 0.3" in line for line in report.lines))
+        self.assertIn("a run of system: fluid has no grains.", self.refusal("plot", "visible"))
+
+    def test_dry_grains_have_no_density_ratio(self):
+        self.write(made_up.CASE.replace("resolved", "grains").replace("fluid:", "unknown:"), "time [s]\n0\n")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "a run of system: grains has no fluid"):
+            thalweg.Run(self.folder).density_ratio
 
 
 if __name__ == "__main__":
