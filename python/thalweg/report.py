@@ -107,23 +107,36 @@ def describe_transport(report):
         report.say("moving", f"{moving:.4g}{known} grains faster than the threshold")
 
 
+def times_of_means(run, observer):
+    """Begin and end (s) of the means that a run has gathered itself, whatever times are asked for; the end is that of
+    the last checkpoint, None while the run is going."""
+    return {"from": run.averaged_from(observer), "until": (run.summary or {}).get("simulated_time")}
+
+
+def in_words(times):
+    end = "on" if times["until"] is None else f"to {times['until']:g} s"
+    return f"from {times['from']:g} {'s ' if times['until'] is None else ''}{end}"
+
+
 def describe_sizes(report):
     found = sizes.sizes_of(report.run)
-    report.numbers["fractional_transport"] = found.numbers()
-    report.say("sizes", found.sentence())
+    times = times_of_means(report.run, "fractional_transport")
+    report.numbers["fractional_transport"] = times | found.numbers()
+    report.say("sizes", f"{found.sentence()}; means of the run {in_words(times)}")
 
 
 def describe_reach(report):
     found = (report.run.summary or {}).get("reach")
     if found is None:
         raise RunFolderError("the means along x are in summary.json, which the run writes at its end.")
-    report.numbers["reach"] = found
+    times = times_of_means(report.run, "reach")
+    report.numbers["reach"] = times | found
     name, label, unit = ("q_star", "q*", "") if "q_star_mean" in found else ("q_s", "q_s", " m^2/s")
     mean, error = found[f"{name}_mean"], found[f"{name}_error"]
     if mean is None:
         raise RunFolderError("nothing was measured before the end of the run.")
     known = "" if error is None else f" +- {error:.2g}"
-    report.say("reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections, from {found['mean_from']:g} s on")
+    report.say("reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections and of the run {in_words(times)}")
     trend = found["bed_level_trend"]
     if trend is not None:
         way = "falling" if trend < 0.0 else "rising"
@@ -169,13 +182,13 @@ def describe_water(report, surface):
     if expected is None:
         return
     above = surface + water.FAR * run.size[1]
-    speeds, since = water.measured_speeds(run, above), run.averaged_from("fluid_statistics")
-    report.numbers["water"] = {"above": above, "from": since, "mean_speed": speeds.mean, "middle_speed": speeds.middle,
-                               "law_of_the_wall": expected._asdict()}
+    speeds, times = water.measured_speeds(run, above), times_of_means(run, "fluid_statistics")
+    report.numbers["water"] = times | {"above": above, "mean_speed": speeds.mean, "middle_speed": speeds.middle,
+                                       "law_of_the_wall": expected._asdict()}
     mean, middle = (f"{value:.4g} m/s ({100 * (value / right - 1):+.1f} %" for value, right in zip(speeds, expected))
     report.say(
         "water",
-        f"above {above:.4g} m, from {since:g} s on: {mean} from the law of the wall at the side walls), "
+        f"above {above:.4g} m, {in_words(times)}: {mean} from the law of the wall at the side walls), "
         f"half-way between them {middle})",
     )
 

@@ -59,11 +59,22 @@ class ReachTest(made_up.MadeUpFolder):
             "reach      left out: the means along x are in summary.json, which the run writes at its end."])
         means = {"q_star_mean": 0.25, "q_star_error": 0.05, "mean_from": 1.0, "bed_level_mean": 0.02, "bed_level_trend": -3e-4,
                  "arrived_grains": 12, "left_grains": 10, "residence_time_mean": None}
-        (self.folder / "summary.json").write_text(json.dumps({"reach": means}), encoding="utf-8")
+        (self.folder / "summary.json").write_text(json.dumps({"reach": means, "simulated_time": 3.0}), encoding="utf-8")
         self.assertEqual(self.lines_of_reach(), [
-            "reach      q* = 0.25 +- 0.05, mean of all sections, from 1 s on",
+            "reach      q* = 0.25 +- 0.05, mean of all sections and of the run from 1 to 3 s",
             "reach      bed at 0.02 m, falling by 0.0003 m/s",
             "reach      12 grains came in, 10 left"])
+
+    def test_the_means_of_the_run_keep_their_times_beside_those_of_other_times(self):
+        means = {"q_star_mean": 0.25, "q_star_error": 0.05, "mean_from": 1.0, "bed_level_trend": None,
+                 "arrived_grains": 0, "left_grains": 0}
+        (self.folder / "summary.json").write_text(json.dumps({"reach": means, "simulated_time": 3.0}), encoding="utf-8")
+        report = Report(self.run_(), 2.0, 2.5)
+        describe_reach(report)
+        numbers = report.numbers
+        self.assertEqual((numbers["from"], numbers["until"]), (2.0, 2.5))
+        self.assertEqual((numbers["reach"]["from"], numbers["reach"]["until"]), (1.0, 3.0))
+        self.assertTrue(report.lines[0].endswith("of the run from 1 to 3 s"))
 
     def run_(self):
         return thalweg.Run(self.folder)
