@@ -1,6 +1,7 @@
 """Sediment along a reach as Python shows it: records, figure and page of a run whose numbers are known."""
 import json
 import unittest
+import warnings
 
 import h5py
 import matplotlib.pyplot as plt
@@ -100,6 +101,20 @@ class ReachTest(made_up.MadeUpFolder):
         np.testing.assert_allclose(line.get_xydata(), [[20.0, 0.25], [40.0, 0.5]])
         (bed,) = drawn.axes[-1].lines
         np.testing.assert_allclose(bed.get_xydata()[:, 1], [12.0, 20.0, 30.0])
+        plt.close(drawn)
+
+    def test_a_bed_without_a_level_is_drawn_without_warnings(self):
+        with h5py.File(self.folder / "reach/part_000000010.h5", "a") as first:
+            first["bed_level"][...] = np.nan
+        with h5py.File(self.folder / "reach/part_000000020.h5", "a") as second:
+            second["bed_level"][...] = np.nan
+        self.write_means()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            drawn = figure.figure_of(self.run_())
+        level, rate = drawn.axes[:2]
+        self.assertEqual(level.collections[0].get_array().count(), 0)
+        self.assertEqual(rate.collections[0].get_array().count(), Q_STAR.size)
         plt.close(drawn)
 
     def test_upstream_transport_has_colours_of_its_own(self):

@@ -25,10 +25,11 @@ def draw_in_time(figure, axes, reach, name, factor, label, **colours):
     """An array [time, place] as colours over x (mm) and the time of the records."""
     places = reach[reach.dimensions(name)[1]]
     times = np.append(reach["time"][0] - reach["interval"][0], reach["time"])
-    drawn = axes.pcolormesh(1e3 * edges_of(places), times, np.ma.masked_invalid(factor * reach[name]), **colours)
+    values = np.ma.masked_invalid(factor * reach[name])
+    drawn = axes.pcolormesh(1e3 * edges_of(places), times, values, **colours)
     axes.set_facecolor("0.85")
     axes.set_ylabel("time $t$ [s]")
-    beyond = "max" if np.nanmax(factor * reach[name]) > drawn.get_clim()[1] else "neither"
+    beyond = "max" if values.count() and values.max() > drawn.get_clim()[1] else "neither"
     figure.colorbar(drawn, ax=axes, label=label, pad=0.01, extend=beyond)
 
 
