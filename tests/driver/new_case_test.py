@@ -160,8 +160,12 @@ class NewCase(ProgramTest):
         self.assertEqual(domain["boundaries"]["y"], "periodic")
         for side, asked in zip(domain["size"], (0.1, 0.03)):
             self.assertAlmostEqual(side, asked, delta=0.51 * domain["spacing"])
-        cost = json.loads(self.thalweg("check", self.case, "--json").stdout)["figures"]["core_seconds"]
-        result = self.new(*EXPERIMENT, "--length", 0.1, "--hours", 0.8 * cost / 3600)
+        for _ in range(5):   # both commands measure the speed of a machine that others may slow in between
+            self.new(*EXPERIMENT, "--length", 0.1, "--periodic-width", 0.03)
+            cost = json.loads(self.thalweg("check", self.case, "--json").stdout)["figures"]["core_seconds"]
+            result = self.new(*EXPERIMENT, "--length", 0.1, "--hours", 0.8 * cost / 3600)
+            if result.returncode == 0:
+                break
         self.assertEqual(result.returncode, 0, result.stderr)
         length, width = yaml.safe_load(self.case.read_text())["domain"]["size"]
         self.assertAlmostEqual(length, 0.1, delta=0.51 * domain["spacing"])
