@@ -49,7 +49,7 @@ std::vector<Diagnostic> LatticeSystem<Real>::diagnostics() const {
   const lbm::FluidSurvey survey = survey_of(fluid_);
   const ExcessMass excess = excess_mass(survey, rest_);
   std::vector<Diagnostic> diagnostics = speed_diagnostics(survey, parameters_.units);
-  if (!grains_) add_flow_diagnostics(survey, diagnostics);
+  if (!grains_ || parameters_.flow_target) add_flow_diagnostics(survey, diagnostics);
   diagnostics.push_back({"mean_density_deviation", "1", excess.mean()});
   diagnostics.push_back({"fluid_cells", "1", static_cast<double>(excess.cells)});
   if (grains_) diagnostics.push_back({"largest_overlap", "diameter", grains_->largest_overlap()});

@@ -277,6 +277,8 @@ analysis: {bed_surface: {every: 0.1}, wall_forces: {}, population_loads: {}}
         water = self.AREA * 0.024 - 4 * numpy.pi / 6 * 5e-3 ** 3
         force = self.resistance(series) / water
         self.assertAlmostEqual(series["bed_stress"][-1] / (force * series["flow_depth"][-1]), 1.0, delta=0.03)
+        self.assertAlmostEqual(series["body_force_x"][-1] / force, 1.0, delta=0.03)
+        self.assertAlmostEqual(series["mean_velocity_x"][-1], 0.02, delta=0.03 * 0.02)
 
     def test_a_lid_at_rest_takes_its_share(self):
         self.run_well("run", self.case, "--set", "domain.boundaries.top=no_slip", "--set", "gravity.slope=0.01")
