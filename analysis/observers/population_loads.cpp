@@ -17,14 +17,15 @@ PopulationLoads::PopulationLoads(MPI_Comm communicator, const PeriodicBox& box,
       populations_(std::move(populations)),
       ids_{{}, std::move(supplied)},
       with_fluid_(with_fluid) {
-  for (const PopulationContext& population : populations_) ids_.ends.push_back(population.end);
-  for (const PopulationContext& population : populations_)
+  for (const PopulationContext& population : populations_) {
+    ids_.ends.push_back(population.end);
     for (const char* source : {"contact", "fluid"}) {
       if (!with_fluid_ && source[0] == 'f') continue;
       for (const auto& [what, unit] : {std::pair("force", "N"), std::pair("torque", "N m")})
         for (const char axis : {'x', 'y', 'z'})
           diagnostics_.push_back({fmt::format("{}_{}_{}_{}", population.name, source, what, axis), unit, 0.0});
     }
+  }
 }
 
 void PopulationLoads::observe(const Snapshot& snapshot) {
@@ -33,12 +34,14 @@ void PopulationLoads::observe(const Snapshot& snapshot) {
   auto diagnostic = diagnostics_.begin();
   std::vector<double> terms;
   const auto add = [&terms](const Vec3& v) { terms.insert(terms.end(), v.data(), v.data() + 3); };
+  std::vector<std::int64_t> population;  // of each grain
+  for (const GlobalId id : grains.id) population.push_back(population_of(id, ids_));
   for (std::size_t p = 0; p < populations_.size(); ++p) {
     const Vec3 pivot =
         box_.wrapped_from_afar(populations_[p].pivot(snapshot.time));  // it goes on where grains come back
     terms.clear();
     for (std::size_t i = 0; i < grains.id.size(); ++i) {
-      if (population_of(grains.id[i], ids_) != static_cast<std::int64_t>(p)) continue;
+      if (population[i] != static_cast<std::int64_t>(p)) continue;
       const Vec3 arm = box_.difference(grains.position[i], pivot);
       add(grains.contact_force[i]);
       add(arm.cross(grains.contact_force[i]) + grains.contact_torque[i]);

@@ -52,9 +52,8 @@ public:
   // add_extremes() (fluid_diagnostics.hpp); those of SolidBodies, of the last step: what the fluid exerts on the
   // surface of each solid, without the reference pressure. With grains largest_overlap (diameters), largest_grain_speed
   // (m/s), those of MassBudget, of add_momentum() and of GrainDynamics::turnover_diagnostics(), if asked for
-  // wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains or with a held mean
-  // velocity mean_velocity_x (m/s) and
-  // body_force_x (N/m^3). Collective.
+  // wall_force_bottom_x ... and fluid_wall_force_bottom_x ... (N); without grains or with a held mean velocity
+  // mean_velocity_x (m/s) and body_force_x (N/m^3). Collective.
   std::vector<Diagnostic> diagnostics() const override;
   std::optional<Location> location_of(const std::string& diagnostic) const override;
   void save(ArchiveWriter& archive) const override;

@@ -1,6 +1,7 @@
 #include "driver/input/run_context.hpp"
 
 #include "beds/sizes/size_classes.hpp"
+#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/estimate/obstacles.hpp"
 #include "driver/estimate/reference_grain.hpp"
@@ -38,7 +39,7 @@ analysis::FluidContext fluid_context(const Case& c) {
           c.fluid.kinematic_viscosity,
           units_of(c).velocity(),
           c.fluid.mean_velocity.has_value(),
-          c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(),
+          side_walls(c),
           c.domain.faces[top].drags(),
           c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0};
 }

@@ -1,6 +1,7 @@
 #include "driver/plan/experiment.hpp"
 
 #include "core/base/error.hpp"
+#include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/warnings/unit_warnings.hpp"
 
@@ -98,7 +99,7 @@ void refuse_impossible_flow(const Experiment& e) {
   if (!e.shields_number) return;
   const double product = (e.density / e.fluid_density() - 1.0) * sizes_of(e).median * *e.shields_number;
   if (e.depth) {
-    const double radius = e.width ? *e.depth * *e.width / (2.0 * *e.depth + *e.width) : *e.depth;
+    const double radius = e.width ? thalweg::hydraulic_radius(*e.depth, *e.width, 2) : *e.depth;
     if (product >= radius)
       refuse(
           fmt::format("under --depth {:g} m of water no slope gives --shields {:g}: give a smaller Shields number "

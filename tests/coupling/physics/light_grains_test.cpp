@@ -107,6 +107,20 @@ constexpr Spin spins[] = {{1.0, {0.4588, 0.2074, 0.1094}},
                           {0.2, {0.1114, 0.0347, 0.0165}},
                           {0.1, {0.0541, 0.0165, 0.0078}}};
 
+// A box of a fluid so viscous that the spin of a sphere of six cells' radius decays within some hundred steps.
+WaterBox viscous_box(int cells, bodies::LinkRule rule) {
+  WaterBox box;
+  box.cells = {cells, cells, cells};
+  box.spacing = 1e-4;
+  box.time_step = 1e-4 / 3.0;
+  box.viscosity = 1e-5;
+  box.smagorinsky_constant = 0.0;
+  box.collision = lbm::CollisionModel::trt;
+  box.links.rule = rule;
+  box.normal_stiffness = 1.0;
+  return box;
+}
+
 class SuddenSpin : public ::testing::TestWithParam<std::tuple<Spin, bodies::LinkRule, dem::Motion>> {};
 
 // 3 % for the lattice: in the first steps the layer that turns with the sphere is thinner than a cell. A light sphere
@@ -115,15 +129,7 @@ class SuddenSpin : public ::testing::TestWithParam<std::tuple<Spin, bodies::Link
 // spin is the same where its place is held.
 TEST_P(SuddenSpin, DecaysAsInUnsteadyStokesFlow) {
   const auto [spin, rule, motion] = GetParam();
-  WaterBox box;
-  box.cells = {48, 48, 48};
-  box.spacing = 1e-4;
-  box.time_step = 1e-4 / 3.0;
-  box.viscosity = 1e-5;
-  box.smagorinsky_constant = 0.0;
-  box.collision = lbm::CollisionModel::trt;
-  box.links.rule = rule;
-  box.normal_stiffness = 1.0;
+  WaterBox box = viscous_box(48, rule);
   box.seeds = {glass_sphere(0, Vec3(0.00243, 0.00238, 0.00241), Vec3::Zero(), 6e-4)};
   box.seeds[0].density = fluid_density * spin.density_ratio;
   box.seeds[0].motion = motion;
@@ -155,15 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Densities, SuddenSpin,
 // slows down as much where its place is held. Forces on the members turn it then.
 TEST(LightGrains, AClumpWhosePlaceIsHeldTurnsAsAFreeOne) {
   const auto spin_left = [](dem::Motion motion) {
-    WaterBox box;
-    box.cells = {40, 40, 40};
-    box.spacing = 1e-4;
-    box.time_step = 1e-4 / 3.0;
-    box.viscosity = 1e-5;
-    box.smagorinsky_constant = 0.0;
-    box.collision = lbm::CollisionModel::trt;
-    box.links.rule = bodies::LinkRule::cli;
-    box.normal_stiffness = 1.0;
+    WaterBox box = viscous_box(40, bodies::LinkRule::cli);
     box.clumps = {glass_clump(0, {{{4e-4, 0, 0}, 4e-4}, {{-4e-4, 0, 0}, 4e-4}}, Vec3(0.00203, 0.00198, 0.00201),
                               Vec3::Zero(), Vec3(0.0, 30.0, 40.0))};
     box.clumps[0].density = 0.2 * fluid_density;
