@@ -78,7 +78,7 @@ void GrainDynamics::for_each_hold(std::span<const char> chosen, const ContactSou
                 });
   std::vector<Vec3> hold(store_.contact_force.begin(),
                          store_.contact_force.begin() + static_cast<std::ptrdiff_t>(store_.owned));
-  for_each_contact_end(store_, list_, surroundings(), materials_, held,
+  for_each_contact_end(acting_grains(), list_, acting_surroundings(), materials_, held,
                        [&](std::size_t slot, const ContactEnd& end) { hold[slot] -= end.force; });
   for (std::size_t s = 0; s < store_.owned; ++s) {
     if (!held[s] || (!chosen.empty() && !chosen[s])) continue;
@@ -100,7 +100,7 @@ void GrainDynamics::for_each_lubrication(
     const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const {
   if (!parameters_.lubrication) return;
   const std::vector<Vec3> from_centre = places_in_clumps();
-  for_each_lubrication_end(store_, list_, surroundings(), *parameters_.lubrication,
+  for_each_lubrication_end(acting_grains(), list_, acting_surroundings(), *parameters_.lubrication,
                            [&](std::size_t slot, const Vec3& arm, const Vec3& force) {
                              visit(slot, from_centre.empty() ? arm : Vec3(arm + from_centre[slot]), force);
                            });
@@ -108,16 +108,16 @@ void GrainDynamics::for_each_lubrication(
 
 void GrainDynamics::for_each_contact_of(
     std::span<const char> chosen, const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
-  for_each_contact_end(store_, list_, surroundings(), materials_, chosen, visit);
+  for_each_contact_end(acting_grains(), list_, acting_surroundings(), materials_, chosen, visit);
   for_each_hold(chosen, visit);
 }
 
 void GrainDynamics::for_each_wall_force(
     const std::function<void(std::size_t slot, const ContactEnd& end)>& visit) const {
-  for_each_wall_contact(store_, list_, surroundings(), materials_, visit);
+  for_each_wall_contact(acting_grains(), list_, acting_surroundings(), materials_, visit);
   for_each_hold({}, visit);
   if (parameters_.lubrication)
-    for_each_wall_lubrication(store_, list_, surroundings(), *parameters_.lubrication, visit);
+    for_each_wall_lubrication(acting_grains(), list_, acting_surroundings(), *parameters_.lubrication, visit);
 }
 
 std::vector<Vec3> GrainDynamics::wall_forces() const {

@@ -76,6 +76,14 @@ void GrainDynamics::advance(int sub_steps) {
   moving_.scatter_to(store_);
 }
 
+void GrainDynamics::keep_acting_state() {
+  acting_.grains.resize(moving_.size());
+  for (std::size_t s = 0; s < moving_.size(); ++s)
+    acting_.grains[s] = {vector_of(moving_[s].velocity), vector_of(moving_[s].spin)};
+  acting_.walls = planes_;
+  acting_.solids = solids_;
+}
+
 template <typename Work>
 void GrainDynamics::timed(int phase, Work&& work) {
   const auto scope = timer_.measure(phase);
@@ -100,6 +108,7 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     place_prescribed(time(), time() - 0.5 * dt);
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
     list_.grains_moved(dt * moving_.speed_bound(!clumps_.empty() || !parameters_.assemblies.empty()));
+    if (s + 1 == sub_steps) keep_acting_state();
     evaluate_forces(dt);
     if (s + 1 == sub_steps) break;
     timed(motion_phase_, [&] {

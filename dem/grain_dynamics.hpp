@@ -19,6 +19,7 @@
 #include "dem/clumps/assemblies.hpp"
 #include "dem/clumps/clump_seed.hpp"
 #include "dem/clumps/clumps.hpp"
+#include "dem/contact/acting_state.hpp"
 #include "dem/contact/lubrication.hpp"
 #include "dem/contact/neighbour_list.hpp"
 #include "dem/contact/solid.hpp"
@@ -175,8 +176,9 @@ public:
   // The touching pairs whose lower id is owned here, sorted by ids, then the touching walls of owned grains.
   std::vector<Contact> contacts() const;
 
-  // Every contact of every owned grain, as it feels it (contact_forces.hpp); of a clump's member, with the arm from the
-  // clump's centre.
+  // Every contact of every owned grain, as it felt it in the last sub-step (contact_forces.hpp, acting_state.hpp); of a
+  // clump's member, with the arm from the clump's centre. After Gear's correction, a load() and in prepare() by the
+  // velocities of the store.
   void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
   // Visits the lubrication forces (lubrication.hpp) likewise; there are none without lubrication.
   void for_each_lubrication(
@@ -226,6 +228,12 @@ private:
   void place_walls(double time, double time_of_velocity);
   void place_solids(double time, double time_of_velocity);
   Surroundings surroundings() const { return {box_, planes_, solids_, parameters_.solids}; }
+  void keep_acting_state();
+  ActingGrains acting_grains() const { return {store_, acting_.grains}; }
+  Surroundings acting_surroundings() const {
+    return acting_.grains.empty() ? surroundings()
+                                  : Surroundings{box_, acting_.walls, acting_.solids, parameters_.solids};
+  }
   void place_prescribed(double time, double time_of_velocity);
   double largest_prescribed_speed() const;
   void check_prescribed_speed() const;
@@ -318,6 +326,7 @@ private:
   NeighbourList list_;
   GearPredictor gear_;
   PackedGrainState moving_;  // the state during the sub-steps
+  ActingState acting_;       // of the last sub-step by Verlet, until the ghosts are made anew
   Clumps clumps_{parameters_.disk_thickness};
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;

@@ -134,6 +134,7 @@ void GrainDynamics::migrate(ContactHistories& histories) {
 
 // Makes everything that follows from the owned grains: ghosts, neighbour list, body forces.
 void GrainDynamics::build_dependents(const ContactHistories& histories) {
+  acting_ = {};
   clumps_.find_members(store_);
   if (parameters_.field) parameters_.field->fill_columns(store_, clumps_);
   ghosts_.build(store_);

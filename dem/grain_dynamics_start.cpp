@@ -111,6 +111,7 @@ void GrainDynamics::take_seeds(GrainSeeds seeds) {
       check_part(grains, box_, parameters_.walls, parameters_.initial_overlap, largest_radius_);
     check(grains, parameters_.solids, box_, parameters_.initial_overlap);
     check_kinds(grains);
+    check_whole(parameters_.assemblies, grains, box_);
   });
   std::vector<LightestGrain> lightest(static_cast<std::size_t>(materials_.count()));
   for (const GrainSeed& grain : grains)

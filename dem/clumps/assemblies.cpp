@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "core/state/whole_dataset.hpp"
+#include "dem/motion/cell_grid.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -88,6 +89,38 @@ void Assemblies::load(ArchiveReader& archive, const std::string& group) {
     members_.push_back({numbers[2 * m], numbers[2 * m + 1], Vec3(places.data() + 3 * m)});
   }
   find_largest_speed();
+}
+
+void check_whole(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds,
+                 const PeriodicBox& box) {
+  constexpr double rounding = 1e-6;  // of a diameter, between grains that touch
+  std::vector<const GrainSeed*> turning;
+  std::vector<Vec3> points;
+  double largest = 0.0;
+  for (const GrainSeed& seed : seeds) {
+    if (seed.assembly < 0 || !motions[static_cast<std::size_t>(seed.assembly)].turns()) continue;
+    turning.push_back(&seed);
+    points.push_back(box.wrapped(seed.position));
+    largest = std::max(largest, seed.radius);
+  }
+  if (turning.empty()) return;
+  const CellGrid grid(box, 2.0 * (1.0 + rounding) * largest, points);
+  grid.for_each_near_pair([&](std::uint32_t m, std::uint32_t n) {
+    const GrainSeed &a = *turning[grid.order()[m]], &b = *turning[grid.order()[n]];
+    if (a.assembly != b.assembly) return;
+    const Vec3 nearest = box.difference(a.position, b.position);
+    if (nearest.norm() > (1.0 + rounding) * (a.radius + b.radius)) return;
+    const Vec3 across = a.position - b.position - nearest;  // whole lengths of the box
+    const Vec3 torn = across.cross(motions[static_cast<std::size_t>(a.assembly)].axis);
+    if (torn.norm() <= rounding * a.radius) return;
+    Eigen::Index axis = 0;
+    across.cwiseAbs().maxCoeff(&axis);
+    const auto [first, second] = std::minmax(a.id, b.id);
+    throw InputError(
+        fmt::format("Grains {} and {} of a population that turns touch across the periodic face of axis {}, where "
+                    "their rotation would tear them apart; move all so that the population does not lie across it.",
+                    first, second, "xyz"[axis]));
+  });
 }
 
 }  // namespace thalweg::dem

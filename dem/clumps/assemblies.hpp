@@ -56,4 +56,10 @@ private:
   double largest_speed_ = 0.0;
 };
 
+// Throws InputError where an assembly turns and two of its grains touch across a periodic face, unless that is across
+// the axis of its rotation alone: they would turn about different images of the axis, and part. Positions must be in
+// the box.
+void check_whole(const std::vector<PrescribedMotion>& motions, std::span<const GrainSeed> seeds,
+                 const PeriodicBox& box);
+
 }  // namespace thalweg::dem

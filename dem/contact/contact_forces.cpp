@@ -143,14 +143,15 @@ std::optional<Vec3> force_of(const SingleContacts& law, const ContactMotion& mot
 
 // Calls visit(contact number, motion, separation, force on the first) for every acting pair with a wanted grain.
 template <typename Wanted, typename Visitor>
-void visit_pairs(const GrainStore& store, const NeighbourList& list, const PeriodicBox& box,
+void visit_pairs(const ActingGrains& grains, const NeighbourList& list, const PeriodicBox& box,
                  const MaterialTable& materials, const Wanted& wanted, Visitor&& visit) {
   const auto law = single_contacts(list.pair_rows, 0.0);
   for (std::size_t number = 0; number < list.pairs.size(); ++number) {
     const PairContact& c = list.pairs[number];
     if (!wanted(c.first) && !wanted(c.second)) continue;
+    const GrainStore& store = grains.store;
     const Vec3 separation = box.difference(store.position[c.first], store.position[c.second]);
-    const ContactMotion motion = motion_of(body_of(store, c.first), body_of(store, c.second), separation);
+    const ContactMotion motion = motion_of(body_of(grains, c.first), body_of(grains, c.second), separation);
     const MaterialTable::Entry& entry = materials.pair(store.material[c.first], store.material[c.second]);
     if (const std::optional<Vec3> force = force_of(*law, motion, entry, std::nullopt, list.pair_rows[number]))
       visit(number, motion, separation, *force);
@@ -169,11 +170,12 @@ void evaluate_contacts(PackedGrainState& grains, NeighbourList& list, const Surr
   evaluate_solids(*single_contacts(list.solid_rows, time_step), grains, list, around, materials, material);
 }
 
-void for_each_contact_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_contact_end(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                           const MaterialTable& materials, std::span<const char> chosen,
                           const ContactEndVisitor& visit) {
+  const GrainStore& store = grains.store;
   const auto wanted = [&](std::size_t slot) { return !store.is_ghost(slot) && (chosen.empty() || chosen[slot] != 0); };
-  visit_pairs(store, list, around.box, materials, wanted,
+  visit_pairs(grains, list, around.box, materials, wanted,
               [&](std::size_t number, const ContactMotion& motion, const Vec3& separation, const Vec3& force) {
                 const auto [first, second, reach] = list.pairs[number];
                 const Vec3 n = normal_of(motion);
@@ -183,15 +185,16 @@ void for_each_contact_end(const GrainStore& store, const NeighbourList& list, co
                 if (wanted(second))
                   visit(second, {(store.radius[second] - half) * n, -force, store.id[first], separation});
               });
-  for_each_wall_contact(store, list, around, materials, [&](std::size_t slot, const ContactEnd& end) {
+  for_each_wall_contact(grains, list, around, materials, [&](std::size_t slot, const ContactEnd& end) {
     if (wanted(slot)) visit(slot, end);
   });
 }
 
-void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_wall_contact(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                            const MaterialTable& materials, const ContactEndVisitor& visit) {
+  const GrainStore& store = grains.store;
   const auto visit_acting = [&](const SingleContacts& law, const ContactRows& rows, const WallTouch& touch) {
-    const ContactMotion motion = motion_of(body_of(store, touch.slot), touch);
+    const ContactMotion motion = motion_of(body_of(grains, touch.slot), touch);
     const MaterialTable::Entry& entry = materials.wall(store.material[touch.slot]);
     const std::optional<Vec3> force = force_of(law, motion, entry, touch.friction, rows[touch.row], touch.goes_on);
     if (!force || store.is_ghost(touch.slot)) return;
@@ -199,10 +202,10 @@ void for_each_wall_contact(const GrainStore& store, const NeighbourList& list, c
     visit(touch.slot, {arm, *force, touch.partner(), arm});
   };
   const auto with_walls = single_contacts(list.wall_rows, 0.0);
-  for_each_wall_touch(store, list, around, [&](const WallTouch& t) { visit_acting(*with_walls, list.wall_rows, t); });
+  for_each_wall_touch(grains, list, around, [&](const WallTouch& t) { visit_acting(*with_walls, list.wall_rows, t); });
   if (list.solids.empty()) return;
   const auto with_solids = single_contacts(list.solid_rows, 0.0);
-  for_each_solid_touch(store, list, around, with_solids->range(),
+  for_each_solid_touch(grains, list, around, with_solids->range(),
                        [&](const WallTouch& t) { visit_acting(*with_solids, list.solid_rows, t); });
 }
 

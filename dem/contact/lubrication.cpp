@@ -165,21 +165,22 @@ void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surrou
                      [&](const WallTouch& touch, const NearSurfaces& near) { add_to_grain(grains[touch.slot], near); });
 }
 
-void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_lubrication_end(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit) {
+  const GrainStore& store = grains.store;
   for (const PairContact& c : list.pairs)
-    visit_near_grains(store, c.first, c.second, around.box, parameters, [&](const NearSurfaces& near) {
+    visit_near_grains(grains, c.first, c.second, around.box, parameters, [&](const NearSurfaces& near) {
       if (!store.is_ghost(c.first)) visit(c.first, -near.first_arm * near.normal, near.load.force);
       if (!store.is_ghost(c.second)) visit(c.second, near.second_arm * near.normal, -near.load.force);
     });
-  for_each_wall_lubrication(store, list, around, parameters,
+  for_each_wall_lubrication(grains, list, around, parameters,
                             [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
 }
 
-void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_wall_lubrication(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit) {
-  for_each_near_wall(store, list, around, parameters, [&](const WallTouch& touch, const NearSurfaces& near) {
-    if (store.is_ghost(touch.slot)) return;
+  for_each_near_wall(grains, list, around, parameters, [&](const WallTouch& touch, const NearSurfaces& near) {
+    if (grains.store.is_ghost(touch.slot)) return;
     const Vec3 arm = -near.first_arm * near.normal;
     visit(touch.slot, {arm, near.load.force, touch.partner(), arm});
   });

@@ -19,6 +19,7 @@
 
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
+#include "dem/contact/acting_state.hpp"
 #include "dem/contact/neighbour_list.hpp"
 #include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
@@ -67,13 +68,13 @@ void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surrou
                      const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m
-// from its centre to the middle of the gap (to a wall's surface), N. By the present positions and velocities.
+// from its centre to the middle of the gap (to a wall's surface), N. By the present positions and the given velocities.
 using LubricationVisitor = std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>;
-void for_each_lubrication_end(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_lubrication_end(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit);
 
 // Visits the forces of walls and solids only, with the partner as for_each_wall_contact() gives it.
-void for_each_wall_lubrication(const GrainStore& store, const NeighbourList& list, const Surroundings& around,
+void for_each_wall_lubrication(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit);
 
 }  // namespace thalweg::dem

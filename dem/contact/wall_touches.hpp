@@ -30,7 +30,7 @@ inline ContactMotion motion_of(const ContactBody& grain, const WallTouch& touch)
   return motion;
 }
 
-// Calls visit(touch) for every wall contact of the list, near or not. Grains: PackedGrainState or GrainStore.
+// Calls visit(touch) for every wall contact of the list, near or not. Grains: with position_of() and radius_of().
 template <typename Grains, typename Visit>
 void for_each_wall_touch(const Grains& grains, const NeighbourList& list, const Surroundings& around, Visit visit) {
   for (std::size_t row = 0; row < list.walls.size(); ++row) {

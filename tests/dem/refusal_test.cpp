@@ -39,6 +39,24 @@ void expect_names(const std::string& message, const std::vector<std::string>& wo
   for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
 }
 
+TEST(Start, RefusesATurningAssemblyAcrossAPeriodicFace) {
+  GrainParameters p = usual();
+  PrescribedMotion turning;
+  turning.angular_velocity = 5.0;
+  p.assemblies = {turning};
+  const auto start_with = [&](const Vec3& axis, double x) {
+    p.assemblies[0].axis = axis;
+    std::vector<GrainSeed> seeds = {test::glass_sphere(0, Vec3(0.038, 0.02, 0.02)),
+                                    test::glass_sphere(1, Vec3(x, 0.02, 0.02))};
+    for (GrainSeed& seed : seeds) seed.motion = Motion::fixed, seed.assembly = 0;
+    return start(seeds, p);
+  };
+  expect_names(start_with(Vec3::UnitY(), 0.002), {"Grains 0 and 1", "axis x", "tear"});
+  EXPECT_EQ(start_with(Vec3::UnitX(), 0.002), "nothing was thrown");  // turns along with its image
+  EXPECT_EQ(start_with(Vec3::UnitY(), 0.034), "nothing was thrown");
+  EXPECT_EQ(start_with(Vec3::UnitY(), 0.006), "nothing was thrown");  // far from each other
+}
+
 TEST(Start, RefusesImpossibleGrains) {
   const GrainSeed good = test::glass_sphere(0, Vec3(0.02, 0.02, 0.02));
   EXPECT_EQ(start({good}), "nothing was thrown");
