@@ -2,12 +2,15 @@
 #
 # The GoogleTest suites in some sources of a module, registered once per number of MPI ranks. Ranks may outnumber the cores of the
 # machine. On the numbers of ranks after QUICK they take a second or two, also where the sanitizers make them several times slower
-# than that: these have the label quick, and the target quick_tests builds them.
+# than that: these have the label quick, and the target quick_tests builds them. With THALWEG_ONLY_QUICK_TESTS there are no others.
 #
 # All tests of a module are one program, MODULE_tests. It is compiled in a few units of several sources, which takes a third of the
 # time: what these instantiate of Eigen and GoogleTest is instantiated once for each unit.
 function(thalweg_test)
   cmake_parse_arguments(T "" "NAME" "SOURCES;LIBRARIES;RANKS;QUICK;LABELS" ${ARGN})
+  if(THALWEG_ONLY_QUICK_TESTS AND NOT T_QUICK)
+    return()
+  endif()
   if(NOT T_RANKS)
     set(T_RANKS 1)
   endif()
@@ -71,6 +74,9 @@ endfunction()
 # ctest -L validation.
 function(thalweg_long_test)
   cmake_parse_arguments(T "" "NAME;FILTER" "" ${ARGN})
+  if(THALWEG_ONLY_QUICK_TESTS)
+    return()
+  endif()
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME module)
   add_test(NAME ${T_NAME} COMMAND $<TARGET_FILE:${module}_tests> --gtest_also_run_disabled_tests --gtest_filter=${T_FILTER})
   thalweg_mpi_test_properties(${T_NAME} 1)

@@ -33,7 +33,10 @@ void GrainDynamics::set_force_density(const Vec3& density) {
 void GrainDynamics::evaluate_forces(double time_step) {
   const auto scope = timer_.measure(forces_phase_);
   evaluate_contacts(moving_, list_, surroundings(), materials_, store_.material, time_step);
-  if (parameters_.lubrication) add_lubrication(moving_, list_, surroundings(), *parameters_.lubrication);
+  if (parameters_.lubrication)
+    add_lubrication(moving_, list_, surroundings(),
+                    clump_count_ > 0 ? std::span<const GlobalId>(store_.clump) : std::span<const GlobalId>(),
+                    *parameters_.lubrication);
   if (parameters_.field) parameters_.field->act(moving_, store_, clumps_, body_force_);
   if (rough_floor_) hold_on_rough_floor();
 }

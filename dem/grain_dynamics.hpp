@@ -149,7 +149,7 @@ public:
   // Loads and attached columns are the caller's to write; the rest is read-only.
   GrainStore& store() { return store_; }
   const GrainStore& store() const { return store_; }
-  // N; of a clump's member an equal share of the clump's
+  // N; of a clump's member its share of the clump's
   const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }
   // m, of the sphere (disk) with the volume of a grain, or of a member's whole clump
   double volume_radius(std::size_t owned_slot) const {

@@ -122,7 +122,7 @@ void GrainSystem::save(ArchiveWriter& archive) const {
 }
 
 void GrainSystem::load(ArchiveReader& archive) {
-  require_same_time_step(archive, time_step_);
+  require_same_time_step(archive, time_step_, sub_steps_);
   step_ = archive.integer_attribute("system/step");
   if (field_) field_->load(archive);
   grains_.load(archive);

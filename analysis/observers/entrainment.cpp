@@ -162,8 +162,10 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
   std::vector<Start> starts_here;
   for (const GlobalId id : started) {
     const Memory& memory = memory_[homes_->location_of(id)];
-    Start start{id, memory.radius, memory.mass, 0.0, {memory.rest.x(), memory.rest.y(), memory.rest.z()}};
-    start.share = entraining_of(grain_of(start), memory.ring, settings_.moving_speed).couple_share();
+    Start start{id, memory.radius, memory.mass, 0.0, true, {memory.rest.x(), memory.rest.y(), memory.rest.z()}};
+    const Entraining found = entraining_of(grain_of(start), memory.ring, settings_.moving_speed);
+    start.share = found.couple_share();
+    start.has_onset = found.onset.has_value();
     starts_here.push_back(start);
   }
   const std::vector<GrainRing> rings = rings_on_first_rank(started);
@@ -174,6 +176,7 @@ void Entrainment::count(const std::vector<GlobalId>& started, double time) {
   for (const std::size_t number : order) {
     const Start& start = starts[number];
     ++events_;
+    if (!start.has_onset) ++without_onset_;
     if (std::isfinite(start.share)) {
       ++shares_;
       sum_of_shares_ += start.share;
@@ -223,6 +226,7 @@ Entrainment::Shares Entrainment::shares() const {
 std::vector<Diagnostic> Entrainment::results() const {
   const Shares found = shares();
   std::vector<Diagnostic> results = diagnostics();
+  results.push_back({"entrainments_without_onset", "1", static_cast<double>(without_onset_)});
   results.push_back({"entrainments_with_share", "1", static_cast<double>(shares_)});
   results.push_back({"couple_share_mean", "1", found.mean});
   results.push_back({"couple_share_deviation", "1", found.deviation});
@@ -236,6 +240,10 @@ std::vector<std::string> Entrainment::remarks() const {
   const Shares found = shares();
   if (shares_ > 0) text += fmt::format("; the fluid's couple is {:.3g} of its torque about the hinge", found.mean);
   if (shares_ > 1) text += fmt::format(", +- {:.2g} (standard error of {} starts)", found.error, shares_);
+  if (without_onset_ > 0)
+    text += fmt::format(
+        "; {} began before the memory of {:g} s and {} without a share: give a longer analysis.entrainment.memory",
+        without_onset_, settings_.memory, without_onset_ == 1 ? "is" : "are");
   return {text};
 }
 

@@ -8,7 +8,8 @@
 //
 //   share = sum T_C / sum T_F
 //
-// for events with a hinge and a torque of the fluid that pushes the way the grain went. Events count as independent:
+// for events with a hinge and a torque of the fluid that pushes the way the grain went. A motion that began before what
+// is remembered has no onset, no hinge and no share. Events count as independent:
 // the error of the mean share is its deviation over sqrt(events).
 //
 // A clump is one grain, by the id of its first member.
@@ -82,8 +83,8 @@ public:
 
   // watched_grains, entrainments (1: so far).
   std::vector<Diagnostic> diagnostics() const override;
-  // These; entrainments_with_share, couple_share_mean, couple_share_deviation, couple_share_error (1; not a
-  // number where there are too few events).
+  // These; entrainments_without_onset, entrainments_with_share, couple_share_mean, couple_share_deviation,
+  // couple_share_error (1; not a number where there are too few events).
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
@@ -121,6 +122,7 @@ private:
   struct Start {  // part of an event that all ranks learn
     GlobalId id;
     double radius, mass, share;  // m, kg, 1 (not a number: none)
+    bool has_onset;
     std::array<double, 3> rest;  // m
   };
 
@@ -151,8 +153,8 @@ private:
   std::int64_t watched_count_ = 0;  // over all ranks
   std::vector<Memory> memory_;      // of the ids whose home is here
   std::int64_t seen_step_ = -1, chosen_step_ = -1;
-  std::int64_t events_ = 0, shares_ = 0;               // over all ranks
-  double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;  // the same
+  std::int64_t events_ = 0, shares_ = 0, without_onset_ = 0;  // over all ranks
+  double sum_of_shares_ = 0.0, sum_of_squares_ = 0.0;         // the same
   static constexpr std::uint64_t memory_columns = 9, sample_columns = 20;
   std::uint64_t touch_columns() const { return settings_.clumps ? 12 : 8; }  // with member and from_centre, or without
   std::vector<Event> pending_;                                               // since take_records(); on rank 0

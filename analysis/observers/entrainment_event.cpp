@@ -72,25 +72,30 @@ void add_hinge(Event& event, const Hinge& hinge, const std::vector<HingeTorques>
 
 }  // namespace
 
+std::span<const HingeTorques> Entraining::until_onset() const {
+  return std::span(torques).first(torques.empty() ? 0 : *onset + 1);
+}
+
 double Entraining::couple_share() const {
   double couple = 0.0, fluid = 0.0;
-  for (std::size_t n = 0; n <= onset && n < torques.size(); ++n) {
-    couple += torques[n].couple;
-    fluid += torques[n].fluid;
+  for (const HingeTorques& t : until_onset()) {
+    couple += t.couple;
+    fluid += t.fluid;
   }
   return fluid > 0.0 ? couple / fluid : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Entraining::largest_torque_ratio() const {
   double largest = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t n = 0; n <= onset && n < torques.size(); ++n)
-    if (torques[n].critical > 0.0) largest = std::fmax(largest, torques[n].fluid / torques[n].critical);
+  for (const HingeTorques& t : until_onset())
+    if (t.critical > 0.0) largest = std::fmax(largest, t.fluid / t.critical);
   return largest;
 }
 
 Entraining entraining_of(const EntrainedGrain& grain, const GrainRing& ring, double moving_speed) {
   Entraining found{onset_of(ring, moving_speed), std::nullopt, {}};
-  found.hinge = hinge_of(ring, found.onset, ring.back()[GrainRecord::position] - grain.rest);
+  if (!found.onset) return found;
+  found.hinge = hinge_of(ring, *found.onset, ring.back()[GrainRecord::position] - grain.rest);
   if (found.hinge)
     for (const GrainSample& sample : ring)
       found.torques.push_back(torques_about(*found.hinge, sample, grain.weight, grain.buoyancy));
@@ -100,7 +105,7 @@ Entraining entraining_of(const EntrainedGrain& grain, const GrainRing& ring, dou
 Event event_of(const std::string& name, const EntrainedGrain& grain, const GrainRing& ring,
                const Entraining& entraining) {
   Event event{name, ring.back().time, {}, {}, {}};
-  event.diagnostics = {{"onset_time", "s", ring[entraining.onset].time},
+  event.diagnostics = {{"onset_time", "s", entraining.onset ? ring[*entraining.onset].time : std::nan("")},
                        {"radius", "m", grain.radius},
                        {"couple_share", "1", entraining.couple_share()},
                        {"largest_torque_ratio", "1", entraining.largest_torque_ratio()}};

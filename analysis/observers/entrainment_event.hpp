@@ -5,6 +5,7 @@
 #include "core/state/records.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,14 +19,17 @@ struct EntrainedGrain {
 };
 
 struct Entraining {
-  std::size_t onset;                  // number of the sample
-  std::optional<Hinge> hinge;         // none: it had too few contacts
+  std::optional<std::size_t> onset;   // number of the sample; none: the motion began before the first
+  std::optional<Hinge> hinge;         // none: it had too few contacts, or there is no onset
   std::vector<HingeTorques> torques;  // of each sample; empty without a hinge
 
-  // Share of the couple in the fluid's torque, sum T_C / sum T_F until the onset. Not a number without a hinge, or if
+  // Share of the couple in the fluid's torque, sum T_C / sum T_F until the onset; not a number without a hinge, or if
   // the fluid did not push the way the grain went.
   double couple_share() const;
   double largest_torque_ratio() const;  // T_F/T_c until the onset; not a number without a hinge or a T_c above 0
+
+private:
+  std::span<const HingeTorques> until_onset() const;
 };
 
 Entraining entraining_of(const EntrainedGrain& grain, const GrainRing& ring, double moving_speed);

@@ -49,6 +49,7 @@ void Entrainment::save(ArchiveWriter& archive) const {
   archive.attribute("entrainment/seen_step", seen_step_);
   archive.attribute("entrainment/chosen_step", chosen_step_);
   archive.attribute("entrainment/events", events_);
+  archive.attribute("entrainment/without_onset", without_onset_);
   archive.attribute("entrainment/shares", shares_);
   archive.attribute("entrainment/sum_of_shares", sum_of_shares_);
   archive.attribute("entrainment/sum_of_squares", sum_of_squares_);
@@ -104,6 +105,8 @@ bool Entrainment::load(ArchiveReader& archive) {
   seen_step_ = archive.integer_attribute("entrainment/seen_step");
   chosen_step_ = archive.integer_attribute("entrainment/chosen_step");
   events_ = archive.integer_attribute("entrainment/events");
+  const std::string without_onset = "entrainment/without_onset";  // not in older checkpoints
+  without_onset_ = archive.has(without_onset) ? archive.integer_attribute(without_onset) : 0;
   shares_ = archive.integer_attribute("entrainment/shares");
   sum_of_shares_ = archive.real_attribute("entrainment/sum_of_shares");
   sum_of_squares_ = archive.real_attribute("entrainment/sum_of_squares");

@@ -31,10 +31,10 @@ std::vector<Touch> still_loaded(const GrainRing& ring, std::size_t start, const 
 
 }  // namespace
 
-std::size_t onset_of(const GrainRing& ring, double moving_speed) {
+std::optional<std::size_t> onset_of(const GrainRing& ring, double moving_speed) {
   for (std::size_t n = ring.size(); n-- > 0;)
     if (ring[n][GrainRecord::velocity].norm() <= moving_speed) return n;
-  return 0;
+  return std::nullopt;
 }
 
 std::optional<Hinge> hinge_of(const GrainRing& ring, std::size_t onset, const Vec3& way) {

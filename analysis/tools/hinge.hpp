@@ -21,8 +21,9 @@
 
 namespace thalweg::analysis {
 
-// The last sample at rest before the grain left its place: the latest slower than a speed (m/s), or the first of all.
-std::size_t onset_of(const GrainRing& ring, double moving_speed);
+// The last sample at rest before the grain left its place: the latest that is no faster than a speed (m/s); none if the
+// motion began before the first of all.
+std::optional<std::size_t> onset_of(const GrainRing& ring, double moving_speed);
 
 struct Hinge {
   std::array<GlobalId, 2> partners;  // as in Touch

@@ -99,10 +99,20 @@ void Clumps::turn_arms(std::size_t n) {
   for (std::size_t m = first; m < first + count(n); ++m) arms_[m] = turn * offsets_[m];
 }
 
+// Of all shares with the sum 1 and without a moment, sum w_m r_m = 0, those nearest to equal ones:
+// w_m = 1/N - (r_m - r) . C^-1 r, r the mean of r_m, C the sum of (r_m - r)(r_m - r)^T.
 void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
-  for (std::size_t n = 0; n < clumps_.size(); ++n)
-    std::fill_n(of_slot.begin() + static_cast<std::ptrdiff_t>(first_slot_[n]), count(n),
-                Vec3(body_force_[n] / static_cast<double>(clumps_[n].members)));
+  for (std::size_t n = 0; n < clumps_.size(); ++n) {
+    const std::span<const Vec3> offsets(&offsets_[first_arm_[n]], count(n));
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& offset : offsets) mean += offset / static_cast<double>(offsets.size());
+    Mat3 spread = Mat3::Zero();
+    for (const Vec3& offset : offsets) spread += (offset - mean) * (offset - mean).transpose();
+    const Vec3 tilt = spread.completeOrthogonalDecomposition().solve(mean);
+    for (std::size_t m = 0; m < offsets.size(); ++m)
+      of_slot[first_slot_[n] + m] =
+          (1.0 / static_cast<double>(offsets.size()) - (offsets[m] - mean).dot(tilt)) * body_force_[n];
+  }
 }
 
 double Clumps::volume_radius(GlobalId id) const {

@@ -70,7 +70,7 @@ public:
   // body_force: as in GrainParameters, for a clump's mass and the radius of the sphere (disk) of its volume.
   void compute_body_forces(const std::function<Vec3(double, double)>& body_force);
 
-  // Gives every member an equal share of its clump's body force.
+  // Gives the members shares of their clump's body force that have no moment about its centre.
   void share_body_force(std::vector<Vec3>& of_slot) const;
 
   double volume_radius(GlobalId clump) const;  // m, of the sphere (disk) of the volume of a clump owned here

@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "dem/contact/contact_motion.hpp"
+#include "dem/contact/lubrication_shares.hpp"
 #include "dem/contact/wall_touches.hpp"
 #include "dem/laws/material.hpp"
 
@@ -13,6 +14,9 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace thalweg::dem {
 
@@ -41,6 +45,7 @@ struct NearSurfaces {
   Vec3 normal;                   // from the second to the first
   double first_arm, second_arm;  // m, from each centre to the middle of the gap; of a wall the first to its surface
   LubricationLoad load;
+  double reduced_radius, gap;  // m, the latter at least the minimum gap
 };
 
 std::optional<NearSurfaces> between(const ContactBody& first, const ContactBody& second, const Vec3& separation,
@@ -52,9 +57,13 @@ std::optional<NearSurfaces> between(const ContactBody& first, const ContactBody&
   const Vec3 normal = separation / distance;
   const double first_arm = first.radius + 0.5 * gap, second_arm = second.radius + 0.5 * gap;
   const Vec3 approach = first.velocity - second.velocity, spin = first_arm * first.spin + second_arm * second.spin;
-  return NearSurfaces{normal, first_arm, second_arm,
+  return NearSurfaces{normal,
+                      first_arm,
+                      second_arm,
                       averaged_load(lubrication_resistance(parameters, first.radius, first.radius / second.radius, gap),
-                                    normal, approach, approach - spin.cross(normal), first.spin - second.spin)};
+                                    normal, approach, approach - spin.cross(normal), first.spin - second.spin),
+                      first.radius * second.radius / (first.radius + second.radius),
+                      std::max(gap, parameters.minimum_gap * std::min(first.radius, second.radius))};
 }
 
 std::optional<NearSurfaces> between(const ContactBody& sphere, const WallTouch& wall,
@@ -64,9 +73,13 @@ std::optional<NearSurfaces> between(const ContactBody& sphere, const WallTouch& 
   if (!(gap > 0.0 && gap < parameters.reach())) return std::nullopt;
   const double ratio = sphere.radius / wall.effective_radius - 1.0;  // of the radii; 0 at a plane
   const Vec3 approach = sphere.velocity - wall.velocity;
-  return NearSurfaces{n, height, 0.0,
+  return NearSurfaces{n,
+                      height,
+                      0.0,
                       averaged_load(lubrication_resistance(parameters, sphere.radius, ratio, gap), n, approach,
-                                    approach - height * sphere.spin.cross(n), sphere.spin - wall.spin)};
+                                    approach - height * sphere.spin.cross(n), sphere.spin - wall.spin),
+                      wall.effective_radius,
+                      std::max(gap, parameters.minimum_gap * sphere.radius)};
 }
 
 void add_to_pair(PackedGrain& first, PackedGrain& second, const NearSurfaces& near) {
@@ -78,12 +91,47 @@ void add_to_pair(PackedGrain& first, PackedGrain& second, const NearSurfaces& ne
   second.torque += near.second_arm * turn - couple;
 }
 
-// Calls visit(surfaces) where the two grains of a pair are near each other.
-template <typename Grains, typename Visit>
-void visit_near_grains(const Grains& grains, std::size_t first, std::size_t second, const PeriodicBox& box,
-                       const LubricationParameters& parameters, Visit visit) {
-  const Vec3 separation = box.difference(position_of(grains, first), position_of(grains, second));
-  if (const auto near = between(body_of(grains, first), body_of(grains, second), separation, parameters)) visit(*near);
+// Number of the body that a grain is or belongs to. clump: ids, of every slot; empty: there are no clumps.
+std::int64_t body_number(std::span<const GlobalId> clump, std::size_t slot) {
+  const bool is_member = !clump.empty() && clump[slot] >= 0;
+  return is_member ? clump[slot] : -1 - static_cast<std::int64_t>(slot);
+}
+
+void scale(LubricationLoad& load, double share) {
+  load.force *= share;
+  load.couple *= share;
+}
+
+// Calls visit(first, second, surfaces) where the two grains of a pair are near each other. Pairs: with slots `first`
+// and `second`. clump: as above.
+template <typename Grains, typename Pairs, typename Visit>
+void for_each_near_pair(const Grains& grains, const Pairs& pairs, std::span<const GlobalId> clump,
+                        const PeriodicBox& box, const LubricationParameters& parameters, Visit visit) {
+  const auto visit_near = [&](const auto& visitor) {
+    for (const auto& c : pairs) {
+      const Vec3 separation = box.difference(position_of(grains, c.first), position_of(grains, c.second));
+      if (const auto near = between(body_of(grains, c.first), body_of(grains, c.second), separation, parameters))
+        visitor(c.first, c.second, *near);
+    }
+  };
+  if (clump.empty()) return visit_near(visit);
+  struct Near {
+    std::size_t first, second;
+    NearSurfaces surfaces;
+  };
+  std::vector<Near> all;
+  std::vector<NearPlace> places;
+  visit_near([&](std::size_t first, std::size_t second, const NearSurfaces& near) {
+    all.push_back({first, second, near});
+    places.push_back({body_number(clump, first), body_number(clump, second), first, second, position_of(grains, first),
+                      position_of(grains, second), radius_of(grains, first), radius_of(grains, second), near.normal,
+                      near.reduced_radius, near.gap});
+  });
+  const std::vector<double> shares = lubrication_shares(places, box);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    scale(all[n].surfaces.load, shares[n]);
+    visit(all[n].first, all[n].second, all[n].surfaces);
+  }
 }
 
 void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
@@ -91,16 +139,32 @@ void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
   grain.torque += double4(near.first_arm * near.load.force.cross(near.normal) + near.load.couple);
 }
 
-// Calls visit(touch, surfaces) for every wall and every place of a solid that is near a grain.
+// Calls visit(touch, surfaces) for every wall and every place of a solid that is near a grain. clump: as above.
 template <typename Grains, typename Visit>
 void for_each_near_wall(const Grains& grains, const NeighbourList& list, const Surroundings& around,
-                        const LubricationParameters& parameters, Visit visit) {
-  const auto visit_near = [&](const WallTouch& touch) {
-    if (touch.wall < around.walls.size() && !parameters.walls[touch.wall]) return;
-    if (const auto near = between(body_of(grains, touch.slot), touch, parameters)) visit(touch, *near);
+                        std::span<const GlobalId> clump, const LubricationParameters& parameters, Visit visit) {
+  const auto visit_near = [&](const auto& visitor) {
+    const auto visit_touch = [&](const WallTouch& touch) {
+      if (touch.wall < around.walls.size() && !parameters.walls[touch.wall]) return;
+      if (const auto near = between(body_of(grains, touch.slot), touch, parameters)) visitor(touch, *near);
+    };
+    for_each_wall_touch(grains, list, around, visit_touch);
+    for_each_solid_touch(grains, list, around, parameters.reach(), visit_touch);
   };
-  for_each_wall_touch(grains, list, around, visit_near);
-  for_each_solid_touch(grains, list, around, parameters.reach(), visit_near);
+  if (clump.empty()) return visit_near(visit);
+  std::vector<std::pair<WallTouch, NearSurfaces>> all;
+  std::vector<NearPlace> places;
+  visit_near([&](const WallTouch& touch, const NearSurfaces& near) {
+    all.emplace_back(touch, near);
+    places.push_back({body_number(clump, touch.slot), static_cast<std::int64_t>(touch.wall), touch.slot, 0,
+                      position_of(grains, touch.slot), Vec3::Zero(), radius_of(grains, touch.slot), 0.0, near.normal,
+                      near.reduced_radius, near.gap});
+  });
+  const std::vector<double> shares = lubrication_shares(places, around.box);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    scale(all[n].second.load, shares[n]);
+    visit(all[n].first, all[n].second);
+  }
 }
 
 }  // namespace
@@ -155,35 +219,37 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
 }
 
 void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
-                     const LubricationParameters& parameters) {
+                     std::span<const GlobalId> clump, const LubricationParameters& parameters) {
   if (list.near_surfaces.stale())
     look_for_near_pairs(grains, list.pairs, parameters.reach(), around.box, list.near_surfaces, [](std::size_t) {});
-  for (const NearPair& c : list.near_surfaces.pairs())
-    visit_near_grains(grains, c.first, c.second, around.box, parameters,
-                      [&](const NearSurfaces& near) { add_to_pair(grains[c.first], grains[c.second], near); });
-  for_each_near_wall(grains, list, around, parameters,
+  for_each_near_pair(grains, list.near_surfaces.pairs(), clump, around.box, parameters,
+                     [&](std::size_t first, std::size_t second, const NearSurfaces& near) {
+                       add_to_pair(grains[first], grains[second], near);
+                     });
+  for_each_near_wall(grains, list, around, clump, parameters,
                      [&](const WallTouch& touch, const NearSurfaces& near) { add_to_grain(grains[touch.slot], near); });
 }
 
 void for_each_lubrication_end(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                               const LubricationParameters& parameters, const LubricationVisitor& visit) {
   const GrainStore& store = grains.store;
-  for (const PairContact& c : list.pairs)
-    visit_near_grains(grains, c.first, c.second, around.box, parameters, [&](const NearSurfaces& near) {
-      if (!store.is_ghost(c.first)) visit(c.first, -near.first_arm * near.normal, near.load.force);
-      if (!store.is_ghost(c.second)) visit(c.second, near.second_arm * near.normal, -near.load.force);
-    });
+  for_each_near_pair(grains, list.pairs, store.clump, around.box, parameters,
+                     [&](std::size_t first, std::size_t second, const NearSurfaces& near) {
+                       if (!store.is_ghost(first)) visit(first, -near.first_arm * near.normal, near.load.force);
+                       if (!store.is_ghost(second)) visit(second, near.second_arm * near.normal, -near.load.force);
+                     });
   for_each_wall_lubrication(grains, list, around, parameters,
                             [&visit](std::size_t slot, const ContactEnd& end) { visit(slot, end.arm, end.force); });
 }
 
 void for_each_wall_lubrication(const ActingGrains& grains, const NeighbourList& list, const Surroundings& around,
                                const LubricationParameters& parameters, const ContactSource::ContactEndVisitor& visit) {
-  for_each_near_wall(grains, list, around, parameters, [&](const WallTouch& touch, const NearSurfaces& near) {
-    if (grains.store.is_ghost(touch.slot)) return;
-    const Vec3 arm = -near.first_arm * near.normal;
-    visit(touch.slot, {arm, near.load.force, touch.partner(), arm});
-  });
+  for_each_near_wall(grains, list, around, grains.store.clump, parameters,
+                     [&](const WallTouch& touch, const NearSurfaces& near) {
+                       if (grains.store.is_ghost(touch.slot)) return;
+                       const Vec3 arm = -near.first_arm * near.normal;
+                       visit(touch.slot, {arm, near.load.force, touch.partner(), arm});
+                     });
 }
 
 }  // namespace thalweg::dem

@@ -62,10 +62,12 @@ void check(const LubricationParameters& parameters, double largest_radius, doubl
            const PeriodicBox& box, double time_step);
 
 // Adds these forces and torques for all pairs, walls and solids of the list whose gap is below the cut-offs. Surfaces
-// that touch feel their contact law alone. The edge of a solid counts as the plane across the line from it to the
-// grain. Sums run in the order of the list, of whose pairs only the near ones are looked at (inner_neighbour_list.hpp).
+// that touch feel their contact law alone. Members of a clump that are near one body share as lubrication_shares.hpp
+// says; clump: the id of each slot's clump, as in GrainStore; empty: there are no clumps. The edge of a solid counts as
+// the plane across the line from it to the grain. Sums run in the order of the list, of whose pairs only the near ones
+// are looked at (inner_neighbour_list.hpp).
 void add_lubrication(PackedGrainState& grains, NeighbourList& list, const Surroundings& around,
-                     const LubricationParameters& parameters);
+                     std::span<const GlobalId> clump, const LubricationParameters& parameters);
 
 // Calls visit(slot, arm, force) for every such force on every owned grain, in the order of the list, pairs first: m
 // from its centre to the middle of the gap (to a wall's surface), N. By the present positions and the given velocities.

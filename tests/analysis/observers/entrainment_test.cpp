@@ -149,6 +149,7 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   double mean = 0.0, squares = 0.0;
   for (const GlobalId n : {0, 4, 6, 8}) mean += Bed::share(n) / 4.0;
   for (const GlobalId n : {0, 4, 6, 8}) squares += std::pow(Bed::share(n) - mean, 2);
+  EXPECT_EQ(value_of(observer.results(), "entrainments_without_onset"), 0.0);
   EXPECT_EQ(value_of(observer.results(), "entrainments_with_share"), 4.0);
   EXPECT_NEAR(value_of(observer.results(), "couple_share_mean"), mean, 1e-14);
   EXPECT_NEAR(value_of(observer.results(), "couple_share_error"), std::sqrt(squares / 3.0 / 4.0), 1e-7);
@@ -172,6 +173,25 @@ TEST(Entrainment, CountsTheStartsOfTheSurfaceAndMeansTheirShares) {
   EXPECT_NEAR(named(second.arrays, "position").values[30], 19.8 + 0.11, 1e-12);
   EXPECT_NEAR(named(records.events[3].arrays, "position").values[30], 19.91, 1e-12);
   EXPECT_EQ(named(second.arrays, "contact_point").shape[0], 22u);
+}
+
+// It takes 0.05 s and a sample to leave the rest place, and 0.04 s are remembered.
+TEST(Entrainment, AMotionOlderThanTheMemoryHasNoOnset) {
+  Bed bed;
+  EntrainmentSettings forgetful = settings({});
+  forgetful.memory = 0.04;
+  Entrainment observer(MPI_COMM_WORLD, bed.decomposition().box(), forgetful);
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(observer, step);
+  EXPECT_EQ(value_of(observer.diagnostics(), "entrainments"), 4.0);
+  EXPECT_EQ(value_of(observer.results(), "entrainments_without_onset"), 4.0);
+  EXPECT_EQ(value_of(observer.results(), "entrainments_with_share"), 0.0);
+  EXPECT_NE(observer.remarks().at(0).find("4 began before the memory of 0.04 s"), std::string::npos);
+  const Records records = observer.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  ASSERT_EQ(records.events.size(), 4u);
+  EXPECT_TRUE(std::isnan(value_of(records.events[1].diagnostics, "onset_time")));
+  EXPECT_TRUE(std::isnan(value_of(records.events[1].diagnostics, "couple_share")));
+  EXPECT_EQ(named(records.events[1].arrays, "time").values.size(), 5u);
 }
 
 EntrainmentSettings settings_of_twins() {

@@ -176,11 +176,41 @@ TEST(LightGrains, AClumpWhosePlaceIsHeldTurnsAsAFreeOne) {
   EXPECT_LT((held - free).norm(), 0.01 * free.norm());  // the staircase of the cells moves the free one a little
 }
 
+// A second member inside the first adds nothing to a sphere, and does not make it turn when it is let go.
+TEST(LightGrains, AClumpThatIsASphereRisesAsOne) {
+  for (const double density : {100.0, 500.0}) {
+    WaterBox box = box_of({density, 0.05, 0.4});
+    const dem::GrainSeed sphere = box.seeds[0];
+    const auto moved = [&box] {
+      const auto system = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
+      std::vector<Vec3> found;  // velocity (m/s) and spin (rad/s) after each step
+      for (int n = 0; n < 30; ++n) {
+        system->advance();
+        const dem::GrainStore& store = system->grains().store();
+        const dem::Clumps& clumps = system->grains().clumps();
+        found.push_back(clumps.empty() ? store.velocity[0] : clumps[0].velocity);
+        found.push_back(clumps.empty() ? store.angular_velocity[0] : clumps[0].angular_velocity);
+      }
+      return found;
+    };
+    const std::vector<Vec3> alone = moved();
+    box.seeds.clear();
+    box.clumps = {glass_clump(0, {{Vec3::Zero(), radius}, {Vec3(0.5 * radius, 0, 0), 0.4 * radius}}, sphere.position)};
+    box.clumps[0].density = density;
+    const std::vector<Vec3> clump = moved();
+    const double speed = alone[alone.size() - 2].norm();
+    for (std::size_t n = 0; n < alone.size(); n += 2) {
+      ASSERT_LT((clump[n] - alone[n]).norm(), 1e-3 * speed) << "step " << n / 2;
+      ASSERT_LT((clump[n + 1] - alone[n + 1]).norm() * radius, 1e-3 * speed) << "step " << n / 2;
+    }
+  }
+}
+
 // Acrylic, ice, wax and foam in oil, with six cells a diameter: the speed has no direction but that of gravity, and the
 // spin stays small.
 TEST(LightGrains, KeepTheirSpinSmallAtAnyDensity) {
   for (const bodies::LinkRule rule : {bodies::LinkRule::bouzidi, bodies::LinkRule::cli})
-    for (const double density : {1200.0, 1150.0, 900.0, 700.0, 400.0, 100.0})
+    for (const double density : {1150.0, 900.0, 400.0, 100.0})
       for (const double excess : {0.03, 0.2, 0.5}) {  // tau - 1/2
         WaterBox box;
         box.cells = {20, 20, 38};

@@ -74,7 +74,7 @@ Loads pair_loads(const Body& first, const Body& second, const Vec3& direction, d
   NeighbourList list;
   list.pairs.push_back({0, 1, first.radius + second.radius});
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
-  add_lubrication(grains, list, {box, {}, {}, {}}, parameters());
+  add_lubrication(grains, list, {box, {}, {}, {}}, {}, parameters());
   expect_seen(store, grains, list, box, {});
   return {{vector_of(grains[0].force), vector_of(grains[1].force)},
           {vector_of(grains[0].torque), vector_of(grains[1].torque)}};
@@ -90,7 +90,7 @@ Loads wall_loads(const Body& body, double gap) {
   list.walls.push_back({0, 0});
   const Plane floor;
   const PeriodicBox box{Vec3(0.1, 0.1, 0.1), {false, false, false}};
-  add_lubrication(grains, list, {box, {&floor, 1}, {}, {}}, parameters());
+  add_lubrication(grains, list, {box, {&floor, 1}, {}, {}}, {}, parameters());
   expect_seen(store, grains, list, box, {&floor, 1});
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
 }
@@ -113,7 +113,7 @@ Loads solid_loads(const Body& body, SolidSurface surface, const Vec3& position, 
   const Vec3 weightless = Vec3::Zero();
   PackedGrainState grains;
   grains.gather_from(store, {&weightless, 1});
-  add_lubrication(grains, list, around, parameters());
+  add_lubrication(grains, list, around, {}, parameters());
   return {{vector_of(grains[0].force), Vec3::Zero()}, {vector_of(grains[0].torque), Vec3::Zero()}};
 }
 
@@ -282,8 +282,8 @@ TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
     by_all.gather_from(store, {});
     NeighbourList whole = kept;
     whole.near_surfaces = InnerNeighbourList(1.0);  // all are near
-    add_lubrication(by_near, kept, {box, {}, {}, {}}, parameters());
-    add_lubrication(by_all, whole, {box, {}, {}, {}}, parameters());
+    add_lubrication(by_near, kept, {box, {}, {}, {}}, {}, parameters());
+    add_lubrication(by_all, whole, {box, {}, {}, {}}, {}, parameters());
     ASSERT_EQ(whole.near_surfaces.pairs().size(), kept.pairs.size());
     any_far = any_far || kept.near_surfaces.pairs().size() < kept.pairs.size();
     for (std::size_t n = 0; n < 60; ++n) {
@@ -295,6 +295,54 @@ TEST(Lubrication, OfNearPairsIsThatOfAllPairs) {
     kept.grains_moved(dt * fastest);
   }
   EXPECT_TRUE(any_near && any_far);
+}
+
+// Bodies of two members on a floor, or above a sphere, that approach with 1 m/s.
+double force_on(const std::vector<PlacedSphere>& members, double gap, bool on_sphere) {
+  double lowest = 0.0;
+  for (const PlacedSphere& member : members) lowest = std::min(lowest, member.position.z() - member.radius);
+  const Vec3 partner(0.05, 0.05, 0.02), centre = partner + Vec3(0.0, 0.0, (on_sphere ? b : -0.02) + gap - lowest);
+  GrainStore store;
+  for (const PlacedSphere& member : members) {
+    store.append(static_cast<GlobalId>(store.total()), member.radius, 1e-4, Motion::free, centre + member.position);
+    store.clump.back() = 0;
+    store.velocity.back() = -z;
+  }
+  store.append(static_cast<GlobalId>(members.size()), b, 1e-4, Motion::free,
+               on_sphere ? partner : Vec3(0.05, 0.05, 0.09));
+  PackedGrainState grains;
+  grains.gather_from(store, {});
+  NeighbourList list;
+  for (std::uint32_t m = 0; m < members.size(); ++m) {
+    list.pairs.push_back({m, static_cast<std::uint32_t>(members.size()), members[m].radius + b});
+    list.walls.push_back({m, 0});
+  }
+  const Plane floor;
+  const Surroundings around{{Vec3(0.1, 0.1, 0.1), {false, false, false}}, {&floor, 1}, {}, {}};
+  add_lubrication(grains, list, around, store.clump, parameters());
+  double force = 0.0, seen = 0.0;
+  for (std::uint32_t m = 0; m < members.size(); ++m) force += grains[m].force[2];
+  store.owned = members.size();
+  for_each_lubrication_end({store, {}}, list, around, parameters(),
+                           [&](std::size_t, const Vec3&, const Vec3& part) { seen += part.z(); });
+  EXPECT_NEAR(seen, force, 1e-12 * force);
+  return force;
+}
+
+// A sphere is the same body however many members describe it, and two spheres beside each other are two.
+TEST(Lubrication, MembersOfAClumpShareAFilm) {
+  const PlacedSphere sphere{Vec3::Zero(), a};
+  const double near = 0.1 * cut_off;
+  for (const bool on_sphere : {false, true}) {
+    const double alone = force_on({sphere}, near, on_sphere);
+    EXPECT_GT(alone, 0.0);
+    const Vec3 aside(1e-6 * a, 0.0, 0.0);
+    EXPECT_NEAR(force_on({sphere, {aside, a}, {-aside, a}}, near, on_sphere), alone, 1e-4 * alone);
+    EXPECT_NEAR(force_on({sphere, {Vec3(0.0, 0.0, -0.2 * a), 0.79 * a}}, near, on_sphere), alone, 1e-12 * alone);
+  }
+  // With 2 a between the near points of two spheres on a floor, k = (1 + 2 a/h)^-2.
+  const double pair = force_on({{Vec3(-a, 0.0, 0.0), a}, {Vec3(a, 0.0, 0.0), a}}, near, false);
+  EXPECT_NEAR(pair, 2.0 * force_on({sphere}, near, false) / (1.0 + std::pow(1.0 + 2.0 * a / near, -2)), 1e-12 * pair);
 }
 
 }  // namespace
