@@ -21,15 +21,7 @@ void GrainEnergy::observe(const Snapshot& snapshot) {
   }
   for (const ClumpState& clump : grains.clumps) add(clump.kinetic_energy, clump.mass, clump.velocity);
   const std::vector<double> sums = reproducible_sums(communicator_, terms, columns);
-  energy_ = sums[0];
-  momentum_ = Vec3(sums[1], sums[2], sums[3]);
-}
-
-std::vector<Diagnostic> GrainEnergy::diagnostics() const {
-  return {{"grain_kinetic_energy", "J", energy_},
-          {"grain_momentum_x", "kg m/s", momentum_.x()},
-          {"grain_momentum_y", "kg m/s", momentum_.y()},
-          {"grain_momentum_z", "kg m/s", momentum_.z()}};
+  for (std::size_t n = 0; n < columns; ++n) diagnostics_[n].value = sums[n];
 }
 
 }  // namespace thalweg::analysis

@@ -3,9 +3,12 @@
 //   E = sum of (1/2) m |v|^2 + (1/2) I |omega|^2,  I = (2/5) m R^2 (spheres);   p = sum of m v.
 #pragma once
 
+#include "analysis/observer/latest_values.hpp"
 #include "analysis/observer/observer.hpp"
 
 #include <mpi.h>
+
+#include <vector>
 
 namespace thalweg::analysis {
 
@@ -17,15 +20,20 @@ public:
   void observe(const Snapshot& snapshot) override;
 
   // grain_kinetic_energy (J), grain_momentum_x, _y, _z (kg m/s).
-  std::vector<Diagnostic> diagnostics() const override;
+  std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
-  void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
-  bool load(ArchiveReader&) override { return true; }
+  void save(ArchiveWriter& archive) const override { save_latest(archive, communicator_, name(), diagnostics_); }
+  bool load(ArchiveReader& archive) override {
+    load_latest(archive, name(), diagnostics_);
+    return true;
+  }
 
 private:
   MPI_Comm communicator_;
-  double energy_ = 0.0;
-  Vec3 momentum_ = Vec3::Zero();
+  std::vector<Diagnostic> diagnostics_{{"grain_kinetic_energy", "J", 0.0},
+                                       {"grain_momentum_x", "kg m/s", 0.0},
+                                       {"grain_momentum_y", "kg m/s", 0.0},
+                                       {"grain_momentum_z", "kg m/s", 0.0}};
 };
 
 }  // namespace thalweg::analysis

@@ -7,6 +7,7 @@
 // the same bits on any number of ranks.
 #pragma once
 
+#include "analysis/observer/latest_values.hpp"
 #include "analysis/observer/observer_keys.hpp"
 #include "core/geometry/periodic_box.hpp"
 
@@ -43,8 +44,11 @@ public:
   // NAME_fluid_force_x, NAME_fluid_torque_x, ...
   std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
-  void save(ArchiveWriter&) const override {}  // nothing is remembered between measurements
-  bool load(ArchiveReader&) override { return true; }
+  void save(ArchiveWriter& archive) const override { save_latest(archive, communicator_, name(), diagnostics_); }
+  bool load(ArchiveReader& archive) override {
+    load_latest(archive, name(), diagnostics_);
+    return true;
+  }
 
 private:
   MPI_Comm communicator_;

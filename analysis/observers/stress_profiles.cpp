@@ -204,8 +204,8 @@ std::vector<std::string> StressBalance::remarks() const {
         ->value;
   };
   return {fmt::format(
-      "largest difference of the total stress from the driving stress{}: {:.2g} % of the bed stress of {:.4g} Pa, at z "
-      "= {:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
+      "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa that this leaves to "
+      "the bed, at z = {:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
       side_walls_ ? " less what the side walls take" : "", 100.0 * value("largest_difference"), value("bed_stress"),
       value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
       value("largest_difference_of_sum_at"))};

@@ -15,9 +15,9 @@ namespace thalweg {
 
 namespace {
 
-bool fits(const Index3& cells, const Index3& layout) {
+bool fits(const Index3& cells, const Index3& layout, const Index3& least) {
   for (int a = 0; a < 3; ++a)
-    if (layout[a] > 1 && cells[a] / layout[a] < Decomposition::min_cells_per_rank) return false;
+    if (layout[a] > 1 && cells[a] / layout[a] < least[a]) return false;
   return true;
 }
 
@@ -32,7 +32,7 @@ double cost_of(const Index3& cells, const Index3& layout) {
 
 }  // namespace
 
-Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
+Index3 Decomposition::best_layout(const Index3& cells, int ranks, const Index3& least) {
   Index3 best{0, 0, 0};
   double best_cost = std::numeric_limits<double>::infinity();
   for (int px = 1; px <= ranks; ++px) {
@@ -40,7 +40,7 @@ Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
     for (int py = 1; py <= ranks / px; ++py) {
       if ((ranks / px) % py != 0) continue;
       const Index3 layout{px, py, ranks / px / py};
-      if (!fits(cells, layout)) continue;
+      if (!fits(cells, layout, least)) continue;
       const double cost = cost_of(cells, layout);
       if (cost < best_cost) {
         best_cost = cost;
@@ -50,9 +50,9 @@ Index3 Decomposition::best_layout(const Index3& cells, int ranks) {
   }
   if (best[0] == 0)
     throw InputError(
-        fmt::format("{} x {} x {} cells cannot be shared by {} ranks with at least {} cells a rank along "
-                    "every cut axis; use fewer ranks or a larger domain.",
-                    cells[0], cells[1], cells[2], ranks, min_cells_per_rank));
+        fmt::format("{} x {} x {} cells cannot be shared by {} ranks with at least {}, {} and {} cells a rank along "
+                    "x, y and z where it is cut; use fewer ranks or a larger domain.",
+                    cells[0], cells[1], cells[2], ranks, least[0], least[1], least[2]));
   return best;
 }
 
@@ -65,13 +65,14 @@ Block intersection(Block a, const Block& b) {
 }
 
 Decomposition::Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic,
-                             const Index3& layout)
-    : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout) {
-  if (!fits(cells, layout))
-    throw InputError(
-        fmt::format("Layout {},{},{} gives some rank fewer than {} of the {} x {} x {} cells along a cut "
-                    "axis; use fewer ranks there.",
-                    layout[0], layout[1], layout[2], min_cells_per_rank, cells[0], cells[1], cells[2]));
+                             const Index3& layout, const Index3& least)
+    : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout), least_(least) {
+  for (int a = 0; a < 3; ++a) CHECK(least[a] >= min_cells_per_rank);
+  if (!fits(cells, layout, least))
+    throw InputError(fmt::format(
+        "Layout {},{},{} of {} x {} x {} cells leaves some rank too few along a cut axis: it needs {} along "
+        "x, {} along y and {} along z; use fewer ranks there.",
+        layout[0], layout[1], layout[2], cells[0], cells[1], cells[2], least[0], least[1], least[2]));
   for (int a = 0; a < 3; ++a)
     for (int slab = 0; slab <= layout[a]; ++slab)
       cuts_[a].push_back(static_cast<int>(static_cast<std::int64_t>(cells[a]) * slab / layout[a]));
@@ -96,8 +97,8 @@ Decomposition Decomposition::balanced(const std::array<std::vector<std::int64_t>
       const bool behind = k < cells_[a] && (2 * sum + of_plane[k]) * slabs < 2 * total * slab;
       cuts[slab] = behind ? k + 1 : k;
     }
-    for (int slab = 1; slab < slabs; ++slab) cuts[slab] = std::max(cuts[slab], cuts[slab - 1] + min_cells_per_rank);
-    for (int slab = slabs - 1; slab > 0; --slab) cuts[slab] = std::min(cuts[slab], cuts[slab + 1] - min_cells_per_rank);
+    for (int slab = 1; slab < slabs; ++slab) cuts[slab] = std::max(cuts[slab], cuts[slab - 1] + least_[a]);
+    for (int slab = slabs - 1; slab > 0; --slab) cuts[slab] = std::min(cuts[slab], cuts[slab + 1] - least_[a]);
   }
   return result;
 }

@@ -47,18 +47,20 @@ Block intersection(Block a, const Block& b);
 class Decomposition {
 public:
   // cells: global number of cells; spacing: m (or 1 for lattice units); layout: ranks along x, y, z.
-  // Throws InputError where a rank would get fewer than min_cells_per_rank cells along an axis that is cut.
-  Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic, const Index3& layout);
-
   static constexpr int min_cells_per_rank = 4;
+  static constexpr Index3 fewest{min_cells_per_rank, min_cells_per_rank, min_cells_per_rank};
+
+  // least: cells that a rank needs along each axis that is cut, at least min_cells_per_rank. Throws InputError where
+  // one would get fewer.
+  Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic, const Index3& layout,
+                const Index3& least = fewest);
 
   // The layout for `ranks` ranks with the smallest surface between blocks, where cuts in z count 32-fold (a bed is
   // alike everywhere in plan, so columns balance) and cuts in x fourfold. Throws InputError if none fits.
-  static Index3 best_layout(const Index3& cells, int ranks);
+  static Index3 best_layout(const Index3& cells, int ranks, const Index3& least = fewest);
 
   // Decomposition with the same layout whose cuts share weights as evenly as whole cells allow: weights[a][k] >= 0 of
-  // the cells with coordinate k along axis a. No rank gets fewer than min_cells_per_rank cells along an axis that is
-  // cut.
+  // the cells with coordinate k along axis a. No rank gets fewer cells than it needs along an axis that is cut.
   Decomposition balanced(const std::array<std::vector<std::int64_t>, 3>& weights) const;
   bool operator==(const Decomposition& other) const = default;
 
@@ -91,7 +93,7 @@ private:
   Index3 cells_;
   double spacing_;
   std::array<bool, 3> periodic_;
-  Index3 layout_;
+  Index3 layout_, least_;
   std::array<std::vector<int>, 3> cuts_;  // first cell of each slab, and one past the last
 };
 

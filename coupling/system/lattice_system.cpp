@@ -1,10 +1,13 @@
 #include "coupling/system/lattice_system.hpp"
 
+#include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/same_time_step.hpp"
 #include "coupling/loads/momentum_budget.hpp"
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/imported_fluid.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -12,6 +15,20 @@
 namespace thalweg::coupling {
 
 namespace {
+
+// Throws InputError if the saved grains have stresses of the fluid on them and these have none, or the other way round.
+// width: of the columns that these carry.
+void require_same_stresses(const ArchiveReader& archive, int width) {
+  const std::string name = "grains/system_columns";
+  if (!archive.has(name) || archive.integer_attribute(name) == width) return;
+  throw InputError(fmt::format(
+      "The checkpoint's grains {} the fluid's stress on them and those of this case {}: "
+      "coupling.grain_stress or analysis.stress_balance has been {}; leave it as it was, or begin a new run "
+      "from that state with initial.from.",
+      archive.integer_attribute(name) < width ? "lack" : "have",
+      archive.integer_attribute(name) < width ? "have it" : "lack it",
+      archive.integer_attribute(name) < width ? "added" : "taken away"));
+}
 
 std::vector<bodies::Solid> with_motions(const std::vector<bodies::SolidShape>& shapes,
                                         const std::vector<dem::PrescribedMotion>& motions) {
@@ -262,6 +279,7 @@ void LatticeSystem<Real>::save(ArchiveWriter& archive) const {
 template <typename Real>
 void LatticeSystem<Real>::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
+  if (grains_) require_same_stresses(archive, attached_width(parameters_));
   step_ = archive.integer_attribute("system/step");
   bodies_.remove_all();
   fluid_.load(archive);

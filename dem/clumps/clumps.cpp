@@ -3,6 +3,7 @@
 #include "core/parallel/mpi_session.hpp"
 #include "dem/motion/grain_volume.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -15,6 +16,17 @@ namespace thalweg::dem {
 namespace {
 
 void copy(const Vec3& from, double (&to)[3]) { std::copy(from.data(), from.data() + 3, to); }
+
+// C^-1 v of a symmetric matrix without negative eigenvalues, where some may be zero: in the space of the others.
+Vec3 solution_of(const Mat3& matrix, const Vec3& v) {
+  constexpr double rounding = 1e-12;
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(matrix);
+  Vec3 solution = Vec3::Zero();
+  for (int n = 0; n < 3; ++n)
+    if (axes.eigenvalues()[n] > rounding * axes.eigenvalues()[2])
+      solution += axes.eigenvectors().col(n).dot(v) / axes.eigenvalues()[n] * axes.eigenvectors().col(n);
+  return solution;
+}
 
 }  // namespace
 
@@ -108,7 +120,7 @@ void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
     for (const Vec3& offset : offsets) mean += offset / static_cast<double>(offsets.size());
     Mat3 spread = Mat3::Zero();
     for (const Vec3& offset : offsets) spread += (offset - mean) * (offset - mean).transpose();
-    const Vec3 tilt = spread.completeOrthogonalDecomposition().solve(mean);
+    const Vec3 tilt = solution_of(spread, mean);
     for (std::size_t m = 0; m < offsets.size(); ++m)
       of_slot[first_slot_[n] + m] =
           (1.0 / static_cast<double>(offsets.size()) - (offsets[m] - mean).dot(tilt)) * body_force_[n];

@@ -186,13 +186,16 @@ Outcome outcome_of(const loop::LoopRecord& record) {
 }
 
 // Names the checkpoint from which a failed run can be restarted, in one sentence.
-std::string last_good(const RunPaths& paths) {
+std::string last_good(const RunPaths& paths, double checkpoint_interval) {
   fs::path checkpoint = paths.checkpoints.empty() ? fs::path() : paths.checkpoints.front();
   try {
     checkpoint = paths.folder.latest_checkpoint();
   } catch (const InputError&) {  // none has been written in this folder
   }
-  if (checkpoint.empty()) return "There is no checkpoint to restart from; set output.checkpoint.every (s).";
+  if (checkpoint.empty())
+    return fmt::format("There is no checkpoint to restart from in {}; {}.", paths.folder.path().string(),
+                       checkpoint_interval > 0.0 ? "none had been written, or the folder has been moved"
+                                                 : "set output.checkpoint.every (s)");
   return fmt::format("The last good checkpoint is {}.", checkpoint.string());
 }
 
@@ -279,7 +282,7 @@ private:
   // Throws the error again, with the last good checkpoint, after it has gone into the summary.
   [[noreturn]] void fail(const std::exception& error, loop::LoopRecord record, FailureBarrier& failures,
                          const loop::Log& log) const {
-    const RunError told(fmt::format("{} {}", error_message(error), last_good(paths_)));
+    const RunError told(fmt::format("{} {}", error_message(error), last_good(paths_, case_.output.checkpoint.every)));
     record.finished = false;
     record.reason = told.what();
     try {

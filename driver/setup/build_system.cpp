@@ -1,6 +1,7 @@
 #include "driver/setup/build_system.hpp"
 
 #include "core/base/error.hpp"
+#include "lbm/walls/wall_stress.hpp"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,16 @@ constexpr Entry builders[] = {
     {SystemKind::continuum, build_continuum_system},
 };
 
+// Cells that a rank needs along each axis. The law of the wall looks at those of the rank at the wall alone.
+Index3 least_cells(const Case& c) {
+  Index3 least = Decomposition::fewest;
+  if (!has_fluid(c)) return least;
+  for (std::size_t face = 0; face < 6; ++face)
+    if (c.domain.faces[face].type == lbm::FaceType::law_of_the_wall)
+      least[face / 2] = std::max(least[face / 2], lbm::WallStress<float>::layers);
+  return least;
+}
+
 }  // namespace
 
 Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requested) {
@@ -32,7 +43,7 @@ Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requ
       throw InputError("--layout divides a box among ranks, and every rank has the whole column; remove it.");
     return {1, 1, 1};
   }
-  const Index3 layout = requested ? *requested : Decomposition::best_layout(cells_of(c.domain), ranks);
+  const Index3 layout = requested ? *requested : Decomposition::best_layout(cells_of(c.domain), ranks, least_cells(c));
   const double needed = 1.0 * layout[0] * layout[1] * layout[2];
   if (needed != ranks)
     throw InputError(fmt::format("--layout {},{},{} needs {:.15g} rank(s), but the program runs on {}.", layout[0],
@@ -41,7 +52,7 @@ Index3 choose_layout(const Case& c, int ranks, const std::optional<Index3>& requ
 }
 
 Decomposition decomposition_of(const Case& c, const Index3& layout) {
-  return {cells_of(c.domain), c.domain.spacing, periodic_axes(c.domain), layout};
+  return {cells_of(c.domain), c.domain.spacing, periodic_axes(c.domain), layout, least_cells(c)};
 }
 
 std::unique_ptr<System> build_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts, Start start) {

@@ -17,9 +17,10 @@ constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolv
 constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
 constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
 constexpr double widest_cell = 0.05;      // m
-constexpr double most_cells = 1e11, fewest_cells_across = 10.0;               // 1: of a box in metres
-constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;             // kg/m^3, m^2/s
-constexpr double least_in_centimetres = 900.0, most_in_centimetres = 1000.0;  // m/s^2
+constexpr double most_cells = 1e11, fewest_cells_across = 10.0;      // 1: of a box in metres
+constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;    // kg/m^3, m^2/s
+constexpr double weakest_on_earth = 9.0, strongest_on_earth = 10.0;  // m/s^2
+constexpr double thickest_fluid = 0.1;                               // m^2/s
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
@@ -58,20 +59,35 @@ Warnings many_cells_in_millimetres(const Case& c) {
       1e-3 * c.domain.size.x())};
 }
 
-Warnings gravity_in_centimetres(const Case& c) {
+// unit: of length; in_a_metre: how many of them are.
+Warnings gravity_in(const Case& c, const char* unit, double in_a_metre) {
   const Vec3 gravity = gravity_vector(c.gravity);
-  if (gravity.norm() < least_in_centimetres || gravity.norm() > most_in_centimetres) return {};
+  const double in_metres = gravity.norm() / in_a_metre;
+  if (in_metres < weakest_on_earth || in_metres > strongest_on_earth) return {};
   const Change change = c.gravity.vector
                             ? word_change("gravity.vector",
-                                          fmt::format("[{:.9g}, {:.9g}, {:.9g}]", gravity.x() / 100.0,
-                                                      gravity.y() / 100.0, gravity.z() / 100.0),
-                                          [gravity](Case& other) { other.gravity.vector = gravity / 100.0; })
-                            : exact_change("gravity.magnitude", gravity.norm() / 100.0, 6,
+                                          fmt::format("[{:.9g}, {:.9g}, {:.9g}]", gravity.x() / in_a_metre,
+                                                      gravity.y() / in_a_metre, gravity.z() / in_a_metre),
+                                          [=](Case& other) { other.gravity.vector = gravity / in_a_metre; })
+                            : exact_change("gravity.magnitude", in_metres, 6,
                                            [](Case& other, double to) { other.gravity.magnitude = to; });
-  return {{fmt::format("Gravity of {:g} m/s^2 looks like {:g} cm/s^2, which are {:g} m/s^2", gravity.norm(),
-                       gravity.norm(), gravity.norm() / 100.0),
+  return {{fmt::format("Gravity of {0:g} m/s^2 looks like {0:g} {1}/s^2, which are {2:g} m/s^2", gravity.norm(), unit,
+                       in_metres),
            {{{change}, {}}},
            "the value in m/s^2"}};
+}
+Warnings gravity_in_centimetres(const Case& c) { return gravity_in(c, "cm", 100.0); }
+Warnings gravity_in_millimetres(const Case& c) { return gravity_in(c, "mm", 1000.0); }
+
+// Water has 1 mm^2/s, and nothing that flows 0.1 m^2/s.
+Warnings viscosity_in_square_millimetres(const Case& c) {
+  const double viscosity = c.fluid.kinematic_viscosity;
+  if (!has_fluid(c) || c.fluid.density < lightest_liquid || viscosity < thickest_fluid) return {};
+  return {{fmt::format("A kinematic viscosity of {0:g} m^2/s looks like {0:g} mm^2/s, which are {1:g} m^2/s", viscosity,
+                       1e-6 * viscosity),
+           {{{exact_change("fluid.kinematic_viscosity", 1e-6 * viscosity, 6,
+                           [](Case& other, double to) { other.fluid.kinematic_viscosity = to; })},
+             {}}}}};
 }
 
 Warnings densities_in_grams(const Case& c) {
@@ -170,9 +186,10 @@ bool has_other_lengths(const Case& c) {
 }
 
 std::vector<WarningRule> unit_rules() {
-  return {lengths_in_millimetres, box_in_millimetres,  many_cells_in_millimetres,
-          gravity_in_centimetres, densities_in_grams,  liquid_in_grams,
-          slope_in_degrees,       friction_in_degrees, angles_in_degrees};
+  return {lengths_in_millimetres, box_in_millimetres,     many_cells_in_millimetres,
+          gravity_in_centimetres, gravity_in_millimetres, viscosity_in_square_millimetres,
+          densities_in_grams,     liquid_in_grams,        slope_in_degrees,
+          friction_in_degrees,    angles_in_degrees};
 }
 
 }  // namespace thalweg::driver

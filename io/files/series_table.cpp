@@ -6,11 +6,17 @@
 #include "io/files/atomic_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <functional>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace thalweg::io {
 namespace {
@@ -33,13 +39,39 @@ std::string cannot_write_series(const std::filesystem::path& path) {
   return fmt::format("{}: cannot write the series; is the disk full or the folder write-protected?", path.string());
 }
 
+std::vector<std::string> columns_in(const std::string& header) {
+  std::vector<std::string> columns;
+  std::istringstream line(header.substr(0, header.find('\n')));
+  for (std::string column; std::getline(line, column, ',');) columns.push_back(column);
+  return columns;
+}
+
+// Those of the first that are not among the second.
+std::vector<std::string> without(const std::vector<std::string>& columns, const std::vector<std::string>& others) {
+  std::vector<std::string> left;
+  std::copy_if(columns.begin(), columns.end(), std::back_inserter(left), [&](const std::string& column) {
+    return std::find(others.begin(), others.end(), column) == others.end();
+  });
+  return left;
+}
+
+// What tells the columns of a file from those of a run, in words.
+std::string difference(const std::string& in_file, const std::string& in_run) {
+  const std::vector<std::string> file = columns_in(in_file), run = columns_in(in_run);
+  const std::vector<std::string> lost = without(file, run), added = without(run, file);
+  if (lost.empty() && added.empty()) return "in another order";
+  std::string text;
+  if (!added.empty()) text = fmt::format("without {}", fmt::join(added, ", "));
+  if (!lost.empty()) text += fmt::format("{}with {}", text.empty() ? "" : ", ", fmt::join(lost, ", "));
+  return text;
+}
+
 // Throws InputError if the text of a file does not begin with this header; an empty file can be continued.
 void refuse_other_columns(const std::filesystem::path& path, const std::string& text, const std::string& header) {
   if (text.empty() || text.starts_with(header)) return;
   throw InputError(
-      fmt::format("{}: the file has other columns than this run writes ({}); restart into another folder "
-                  "with --out.",
-                  path.string(), header.substr(0, header.size() - 1)));
+      fmt::format("{}: the file has other columns than this run writes, {}; restart into another folder with --out.",
+                  path.string(), difference(text, header)));
 }
 
 // Does work with the file on rank 0. Any error but an InputError means that the file cannot be written.

@@ -41,7 +41,7 @@ void check_depth(const Decomposition& decomposition, int face, const char* name)
   if (cells < layers && cells < decomposition.cells()[axis])
     throw InputError(fmt::format(
         "The law of the wall at {} takes the velocity of cell {} from the wall, but a rank there has only {} "
-        "cells across it; use fewer ranks along {}.",
+        "cells across it; use fewer ranks along {} (--layout).",
         name, layers, cells, name[0]));
 }
 

@@ -1,6 +1,7 @@
 """The commands of Thalweg that are written in Python: `thalweg analyze RUN` is `python -m thalweg analyze RUN`, and so
 on."""
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -62,8 +63,9 @@ def main(arguments=None):
     except RunFolderError as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2
-    except BrokenPipeError:
-        raise
+    except BrokenPipeError:   # head, for example, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except OSError as error:
         print(f"thalweg: {error.filename or 'output'}: {error.strerror}.", file=sys.stderr)
         return 2

@@ -171,6 +171,8 @@ class Frames(Sequence):
     def __getitem__(self, which):
         if isinstance(which, slice):
             return Frames(self._entries[which], self._kind)
+        if not self._entries:
+            raise IndexError("There are no frames: the case asks for none (output), or none has been written.")
         return self._kind(*self._entries[which])
 
     def nearest(self, time):

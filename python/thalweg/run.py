@@ -57,11 +57,18 @@ class Run:
 
     def fluid_part(self, name):
         """Frames of one of `output.fluid_parts` of the case, by its name."""
-        return Frames.of_index(self.folder / "fluid_parts" / f"{name}.pvd", FluidFrame)
+        return self._part("fluid_parts", name, FluidFrame)
 
     def grain_part(self, name):
         """Frames of one of `output.grain_parts` of the case, by its name; they may show no grain."""
-        return Frames.of_index(self.folder / "grain_parts" / f"{name}.pvd", GrainPartFrame)
+        return self._part("grain_parts", name, GrainPartFrame)
+
+    def _part(self, kind, name, frame):
+        index = self.folder / kind / f"{name}.pvd"
+        names = [part.get("name") for part in (self.case.get("output") or {}).get(kind) or []]
+        if name not in names and not index.exists():
+            raise MissingName(name, names, f"{self.folder / 'case.yaml'}: output.{kind}")
+        return Frames.of_index(index, frame)
 
     @cached_property
     def profiles(self):
@@ -138,9 +145,16 @@ class Run:
             ) from None
 
     def result(self, observer, name):
-        """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none, because
-        the run is still going, or ended before it had measured anything."""
-        value = ((self.summary or {}).get(observer) or {}).get(name)
+        """A mean of summary.json: `name` of the group `observer`. Raises RunFolderError where there is none: of
+        another name, or because the run is still going, or ended before it had measured anything."""
+        summary = self.summary or {}
+        if self.summary and observer not in summary:
+            groups = [key for key, group in summary.items() if isinstance(group, dict)]
+            raise RunFolderError(str(MissingName(observer, groups, str(self.folder / "summary.json"))))
+        group = summary.get(observer) or {}
+        if group and name not in group:
+            raise RunFolderError(str(MissingName(name, group, f"{self.folder / 'summary.json'}: {observer}")))
+        value = group.get(name)
         if value is None:
             raise RunFolderError(
                 f"{self.folder}: there is no {observer}.{name}; nothing has been measured, or the run has not ended."

@@ -34,7 +34,7 @@ one_turn() {
   ((status == 3)) || return "$status"
 
   if [[ -n $cancelled ]]; then
-    say "TERM ${seconds:+before the walltime of $(clock_of "$seconds")}, as from scancel or qdel: the run has saved its state," \
+    say "TERM${seconds:+ before the walltime of $(clock_of "$seconds")}, as from scancel or qdel: the run has saved its state," \
         "and this job is not queued again; the same submission continues it."
     return 4
   fi

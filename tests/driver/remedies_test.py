@@ -187,6 +187,8 @@ VARIATIONS = [
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["fluid.density=1"], ["looks like one of 1 g/cm^3", "fluid.density: 1000"]),
     (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which are 9.8", "gravity.magnitude: 9.8"]),
+    (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which are 9.81", "gravity.magnitude: 9.81"]),
+    (WATER, ["fluid.kinematic_viscosity=1"], ["looks like 1 mm^2/s", "fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),
     (
         WATER,

@@ -3,6 +3,7 @@
 
 Called by ctest: restart_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import json
 import shutil
 import subprocess
 import sys
@@ -38,6 +39,18 @@ output: {series: {every: 0.01}}
     def test_the_same_case_has_nothing_to_tell(self):
         said = self.run_well("run", self.case, "--restart", "run").stdout
         self.assertNotIn("changed since then", said)
+
+    def test_a_run_that_is_at_its_end_keeps_its_results(self):
+        def results():
+            summary = json.loads((self.folder / "run/summary.json").read_text())
+            return {name: group for name, group in summary.items() if name in ("grain_energy", "population_loads")}
+
+        loads = ("--set", "analysis.population_loads={}", "--out", "run", "--overwrite")
+        self.run_well("run", self.case, *loads)
+        before = results()
+        self.assertNotEqual(before["grain_energy"]["grain_kinetic_energy"], 0.0)
+        self.run_well("run", self.case, "--restart", "run", *loads[:2])
+        self.assertEqual(results(), before)
 
     def test_what_has_changed_is_told_and_kept(self):
         said = self.run_well(
@@ -135,7 +148,7 @@ output: {series: {every: 0.01}}
             "run", self.case, "--restart", "run", "--until", "0.1", "--set", "analysis.transport_rate={}"
         )
         self.assertEqual(refused.returncode, 2)
-        self.assertIn("series.csv: the file has other columns than this run writes", refused.stderr)
+        self.assertIn("series.csv: the file has other columns than this run writes, without q_s", refused.stderr)
         self.assertEqual(contents_below(self.folder), kept)
 
     def test_a_checkpoint_that_has_left_its_folder_is_compared_too(self):

@@ -17,6 +17,7 @@ KEYS = {"case", "set", "vary", "together", "bisect", "ranks", "columns"}
 BISECT_KEYS = {"key", "from", "to", "width", "spacing", "holds", "repeat", "share"}
 OPERATORS = {">": operator.gt, ">=": operator.ge, "<": operator.lt, "<=": operator.le}
 NO_RESULTS = ("phases", "largest", "units", "provenance")   # sections of summary.json
+MOST_VALUES = 100_000   # of a range: more would not end
 ROUNDING = 1e-9   # relative: a time is a number of steps, and 1050 steps of 7e-4 s are not 0.735 s to the last bit
 
 
@@ -277,7 +278,7 @@ def counted(key, start, stop, count, log):
         raise SweepError(f"{key}.count: {count}: a range has a whole number of values, at least 2.")
     if log and min(start, stop) <= 0.0:
         raise SweepError(f"{key}: a range with spacing: log begins and ends above 0.")
-    shares = [n / (count - 1) for n in range(count)]
+    shares = [n / (count - 1) for n in range(limited(key, count))]
     return [rounded(start * (stop / start) ** share if log else start + share * (stop - start)) for share in shares]
 
 
@@ -287,7 +288,13 @@ def stepped(key, start, stop, given):
     step = number(f"{key}.step", given.get("step", 1))
     if step <= 0.0 or stop < start:
         raise SweepError(f"{key}: a range goes from a smaller to a larger value in steps above 0.")
-    return [rounded(start + n * step) for n in range(int((stop - start) / step * (1.0 + 1e-12)) + 1)]
+    return [rounded(start + n * step) for n in range(limited(key, int((stop - start) / step * (1.0 + 1e-12)) + 1))]
+
+
+def limited(key, count):
+    if count > MOST_VALUES:
+        raise SweepError(f"{key}: a range of {count} values; give at most {MOST_VALUES}.")
+    return count
 
 
 def rounded(value):

@@ -1,6 +1,7 @@
 #include "analysis/observers/grain_energy.hpp"
 
 #include "tests/analysis/made_up_grains.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,12 @@ TEST(GrainEnergy, SumsMotionAndSpinOfSpheres) {
   EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_x"), 2.0);  // one grain more goes forward: m v, exact
   EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_y"), 4.0);
   EXPECT_EQ(value_of(energy.diagnostics(), "grain_momentum_z"), -4.0);
+  // A run that goes on from its last step does not measure again.
+  GrainEnergy restarted(MPI_COMM_WORLD);
+  test::load(restarted, test::saved(energy, MPI_COMM_WORLD));
+  EXPECT_EQ(value_of(restarted.diagnostics(), "grain_kinetic_energy"),
+            value_of(energy.diagnostics(), "grain_kinetic_energy"));
+  EXPECT_EQ(value_of(restarted.diagnostics(), "grain_momentum_z"), -4.0);
 }
 
 TEST(GrainEnergy, TakesAClumpForOneGrain) {

@@ -30,6 +30,19 @@ TEST(Decomposition, CutsPlanBeforeTheVerticalAndLeavesLongRowsWhole) {
   EXPECT_EQ(Decomposition::best_layout({240, 80, 200}, 4), (Index3{2, 2, 1}));
 }
 
+// The law of the wall needs five cells along y.
+TEST(Decomposition, LeavesARankTheCellsItNeeds) {
+  const Index3 cells{72, 13, 90}, least{4, 5, 4};
+  EXPECT_EQ(Decomposition::best_layout(cells, 12), (Index3{4, 3, 1}));
+  EXPECT_EQ(Decomposition::best_layout(cells, 12, least), (Index3{6, 2, 1}));
+  EXPECT_THROW(Decomposition(cells, 1.0, {true, false, false}, {4, 3, 1}, least), InputError);
+  const Decomposition even(cells, 1.0, {true, false, false}, {1, 2, 1}, least);
+  std::array<std::vector<std::int64_t>, 3> weights;
+  for (std::size_t a = 0; a < 3; ++a) weights[a].assign(static_cast<std::size_t>(cells[a]), 1);
+  weights[1][0] = 1000;
+  EXPECT_EQ(even.balanced(weights).block_of(0).size()[1], 5);
+}
+
 TEST(Decomposition, RefusesMoreRanksThanCellsAllow) {
   EXPECT_THROW(Decomposition::best_layout({6, 6, 6}, 64), InputError);
   EXPECT_THROW(Decomposition({6, 6, 6}, 1.0, {true, true, true}, {2, 1, 1}), InputError);
