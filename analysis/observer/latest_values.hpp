@@ -4,28 +4,21 @@
 
 #include "core/base/archive.hpp"
 #include "core/state/system.hpp"
-#include "core/state/whole_dataset.hpp"
 
-#include <mpi.h>
-
-#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace thalweg::analysis {
 
-// Writes the values of diagnostics as NAME/latest, or reads them if there are as many. Collective.
-inline void save_latest(ArchiveWriter& archive, MPI_Comm communicator, const std::string& name,
-                        const std::vector<Diagnostic>& diagnostics) {
-  std::vector<double> values;
-  for (const Diagnostic& diagnostic : diagnostics) values.push_back(diagnostic.value);
-  write_whole(archive, communicator, name + "/latest", values);
+// Writes the values of diagnostics as NAME/latest_DIAGNOSTIC, or reads those that there are.
+inline void save_latest(ArchiveWriter& archive, const std::string& name, const std::vector<Diagnostic>& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics)
+    archive.attribute(name + "/latest_" + diagnostic.name, diagnostic.value);
 }
 inline void load_latest(ArchiveReader& archive, const std::string& name, std::vector<Diagnostic>& diagnostics) {
-  const std::string path = name + "/latest";
-  if (!archive.has(path)) return;  // older checkpoints have none
-  const auto values = read_whole_if_alike<double>(archive, path, {diagnostics.size()});
-  for (std::size_t n = 0; values && n < values->size(); ++n) diagnostics[n].value = (*values)[n];
+  for (Diagnostic& diagnostic : diagnostics)
+    if (const std::string path = name + "/latest_" + diagnostic.name; archive.has(path))  // older checkpoints have none
+      diagnostic.value = archive.real_attribute(path);
 }
 
 }  // namespace thalweg::analysis

@@ -22,7 +22,7 @@ public:
   // grain_kinetic_energy (J), grain_momentum_x, _y, _z (kg m/s).
   std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
-  void save(ArchiveWriter& archive) const override { save_latest(archive, communicator_, name(), diagnostics_); }
+  void save(ArchiveWriter& archive) const override { save_latest(archive, name(), diagnostics_); }
   bool load(ArchiveReader& archive) override {
     load_latest(archive, name(), diagnostics_);
     return true;

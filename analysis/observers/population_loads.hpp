@@ -44,7 +44,7 @@ public:
   // NAME_fluid_force_x, NAME_fluid_torque_x, ...
   std::vector<Diagnostic> diagnostics() const override { return diagnostics_; }
 
-  void save(ArchiveWriter& archive) const override { save_latest(archive, communicator_, name(), diagnostics_); }
+  void save(ArchiveWriter& archive) const override { save_latest(archive, name(), diagnostics_); }
   bool load(ArchiveReader& archive) override {
     load_latest(archive, name(), diagnostics_);
     return true;

@@ -2,6 +2,7 @@
 
 #include "dem/motion/walls.hpp"
 #include "driver/case/axes.hpp"
+#include "driver/estimate/bed_flow.hpp"
 
 #include <fmt/format.h>
 
@@ -108,6 +109,33 @@ Warnings outlets(const Case& c) {
           "Fluid may leave by the pressure_outlet {} and no face brings any in, so that none flows there: consider a "
           "velocity_inlet opposite to it.",
           face_key(c.domain, face)));
+  return found;
+}
+
+// Depths from an inlet within which eddies meet their own copies, and from an outlet within which it is felt.
+Warnings recycling(const Case& c) {
+  constexpr double from_inlet = 3.0, from_outlet = 1.0;
+  Warnings found;
+  const double depth = c.domain.size.z() - settled_height(c);
+  for (std::size_t face = x_low; face <= y_high; ++face) {
+    const coupling::FaceKeys& inlet = c.domain.faces[face];
+    if (inlet.type != FaceType::velocity_inlet || !inlet.recycling_plane) continue;
+    const double length = c.domain.size[static_cast<int>(face / 2)], plane = *inlet.recycling_plane;
+    const double before = face % 2 == 0 ? plane : length - plane, behind = length - before;
+    if (before >= from_inlet * depth && behind >= from_outlet * depth) continue;
+    const double best = face % 2 == 0 ? from_inlet * depth : length - from_inlet * depth;
+    std::vector<Advice> advice;
+    if (length >= (from_inlet + from_outlet) * depth)
+      advice.push_back(
+          {{exact_change(face_key(c.domain, face) + ".recycling_plane", best, 3,
+                         [face](Case& other, double to) { other.domain.faces[face].recycling_plane = to; })},
+           {}});
+    found.push_back(
+        {fmt::format("The recycling plane of {} is {:.3g} depths of the water from the inlet and {:.3g} from "
+                     "the outlet; eddies need {:g} and {:g}",
+                     face_key(c.domain, face), before / depth, behind / depth, from_inlet, from_outlet),
+         advice, "a longer box"});
+  }
   return found;
 }
 

@@ -301,6 +301,7 @@ std::vector<WarningRule> rules_for(const Case& c) {
                                  absent_solids,
                                  with_fluid<swapped_floor>,
                                  with_fluid<inlets>,
+                                 with_fluid<recycling>,
                                  with_fluid<outlets>,
                                  with_fluid<floating_grains>,
                                  sliding_bed,

@@ -44,6 +44,24 @@ run: {until: 30}
 output: {series: {every: 0.01}}
 """
 
+# Water that goes round in an open reach.
+STREAM = """
+system: fluid
+domain:
+  size: [0.3, 0.02, 0.04]
+  spacing: 1.0e-3
+  boundaries:
+    x_low: {type: velocity_inlet, velocity: [0.3, 0, 0], recycling_plane: 0.15}
+    x_high: pressure_outlet
+    y: periodic
+    bottom: no_slip
+    top: free_slip
+fluid: {density: 1000, kinematic_viscosity: 1.0e-6, time_step: 1.0e-4}
+gravity: {magnitude: 9.8}
+run: {until: 30}
+output: {series: {every: 0.01}}
+"""
+
 # A suspension of spheres of six cells in oil.
 SUSPENSION = """
 system: resolved
@@ -187,6 +205,12 @@ VARIATIONS = [
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["fluid.density=1"], ["looks like one of 1 g/cm^3", "fluid.density: 1000"]),
     (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which are 9.8", "gravity.magnitude: 9.8"]),
+    (STREAM, [], []),
+    (
+        STREAM, ["domain.boundaries.x_low.recycling_plane=0.002"],
+        ["0.05 depths of the water from the inlet", "domain.boundaries.x_low.recycling_plane: 0.12"],
+    ),
+    (WATER, ["analysis={transport_rate: {every: 31}}"], ["is made every 31 s", "analysis.transport_rate.every: 0.3"]),
     (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which are 9.81", "gravity.magnitude: 9.81"]),
     (WATER, ["fluid.kinematic_viscosity=1"], ["looks like 1 mm^2/s", "fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),

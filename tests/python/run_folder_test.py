@@ -333,7 +333,8 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertEqual([len(frame) for frame in frames], [2, 0])
         self.assertEqual(frames[0].contact_stress.shape, (2, 3, 3))
         self.assertEqual(frames[0].arrays.units["orientation"], "1")
-        self.assertEqual(len(thalweg.Run(self.folder).grain_part("others")), 0)
+        with self.assertRaisesRegex(KeyError, "no 'others'"):
+            thalweg.Run(self.folder).grain_part("others")
         self.write_frames((0.0,), [np.zeros((0, 3))])
         with self.assertRaisesRegex(thalweg.RunFolderError, "no grains in this frame"):
             thalweg.Run(self.folder).grains[0].position

@@ -16,7 +16,7 @@ from program import SLIDING_GRAINS, ProgramTest
 
 CASE = SLIDING_GRAINS + """
 run: {until: 0.2, time_step: 1.0e-5}
-output: {series: {every: 0.001}, checkpoint: {every: 0.02, keep: 2}, grains: {every: 0.01}}
+output: {series: {every: 0.001}, checkpoint: {every: 0.02, keep: 2}, grains: {every: 0.003}}
 """
 
 

@@ -66,7 +66,7 @@ output: {series: {every: 0}, checkpoint: {every: 0.02, keep: 3}}
     def test_without_a_checkpoint_it_says_so(self):
         result = self.thalweg("run", self.case, "--set", "output.checkpoint.every=0")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("There is no checkpoint to restart from; set output.checkpoint.every", result.stderr)
+        self.assertIn(f"There is no checkpoint to restart from in {self.folder / 'run'}; set output.checkpoint.every", result.stderr)
 
 
 class Unstable(ProgramTest):
