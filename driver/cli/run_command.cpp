@@ -232,7 +232,7 @@ public:
     if (!lock->keeps_others_out())
       log.line(fmt::format("warning: the file system of {} has no locks: make sure that no other run writes there",
                            paths_.folder.path().string()));
-    output_->begin();
+    if (const std::string gap = output_->begin(); !gap.empty()) log.line("warning: " + gap);
   }
 
   Outcome advance(loop::WallClock::time_point started, FailureBarrier& failures, loop::Log& log) {

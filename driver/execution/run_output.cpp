@@ -50,7 +50,7 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
   }
 }
 
-void RunOutput::begin() {
+std::string RunOutput::begin() {
   if (continue_from_) drop_what_is_later();
   const Snapshot snapshot = system_.snapshot();
   if (snapshot.grains.global_count > 0) {
@@ -67,6 +67,7 @@ void RunOutput::begin() {
   for (ObserverRecords& records : records_) records.parts.begin(std::exchange(records.first, {}), system_.step());
   if (case_.output.series.every > 0.0)
     series_ = std::make_unique<io::SeriesTable>(communicator_, folder_.series(), columns_, continue_from_);
+  return series_ ? series_->gap() : std::string();
 }
 
 void RunOutput::add_grains(const std::filesystem::path& folder, const std::string& name,

@@ -35,8 +35,8 @@ public:
             std::optional<double> continue_from);
 
   // Begins the files, or takes them up: what is later than the state the run goes on from is removed. Collective; the
-  // first of all calls.
-  void begin();
+  // first of all calls. Returns, on the first rank, a sentence about what is missing of them; empty: nothing.
+  std::string begin();
 
   // Schedules and actions for the time loop; they refer to this object.
   void add_to(loop::LoopPlan& plan);

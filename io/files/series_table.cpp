@@ -21,18 +21,37 @@
 namespace thalweg::io {
 namespace {
 
+struct KeptRows {
+  std::string text;
+  std::vector<double> times;  // s
+};
+
 // Rows of an existing file up to a time. A last line without its newline was cut short by the end of the run.
-std::string kept_rows(const std::string& text, std::size_t start, double continue_from) {
-  std::string rows;
+KeptRows kept_rows(const std::string& text, std::size_t start, double continue_from) {
+  KeptRows rows;
   while (start < text.size()) {
     const std::size_t end = text.find('\n', start);
     if (end == std::string::npos) break;
     double time = 0.0;
     const auto parsed = std::from_chars(text.data() + start, text.data() + end, time);
-    if (parsed.ec == std::errc() && time <= continue_from) rows += text.substr(start, end + 1 - start);
+    if (parsed.ec == std::errc() && time <= continue_from) {
+      rows.text += text.substr(start, end + 1 - start);
+      rows.times.push_back(time);
+    }
     start = end + 1;
   }
   return rows;
+}
+
+// Rows come at even times, but for one at the end of a run and the next: none is missing if the last is less than one
+// and a half of the longest of the three latest intervals ago.
+std::string gap_after(const std::vector<double>& times, double continue_from) {
+  double interval = 0.0;
+  for (std::size_t n = times.size(); n-- > 1 && n + 3 >= times.size();)
+    interval = std::max(interval, times[n] - times[n - 1]);
+  if (interval == 0.0 || continue_from < times.back() + 1.5 * interval) return {};
+  return fmt::format("the last row of series.csv is that of {:g} s, and those from there to {:g} s are missing",
+                     times.back(), continue_from);
 }
 
 std::string cannot_write_series(const std::filesystem::path& path) {
@@ -105,7 +124,11 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, Seri
     if (continue_from && std::filesystem::exists(path_)) {
       const std::string text = read_text(path_);
       refuse_other_columns(path_, text, header);
-      if (!text.empty()) rows = kept_rows(text, header.size(), *continue_from);
+      if (!text.empty()) {
+        const KeptRows kept = kept_rows(text, header.size(), *continue_from);
+        rows = kept.text;
+        gap_ = gap_after(kept.times, *continue_from);
+      }
     }
     write_text_durably(path_, header + rows);
     file_.open(path_, std::ios::binary | std::ios::app);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace thalweg::io {
 
@@ -28,6 +29,9 @@ public:
   // every rank, if the row has other columns.
   void append(double time, std::span<const Diagnostic> row);
 
+  // A sentence if rows of the file that is continued are missing before the time from which it is; empty elsewhere.
+  const std::string& gap() const { return gap_; }
+
   // Makes the rows so far outlast a loss of power.
   void put_on_disk();
 
@@ -37,6 +41,7 @@ private:
   MPI_Comm communicator_;
   std::filesystem::path path_;
   SeriesColumns columns_;
+  std::string gap_;  // on the first rank
   std::ofstream file_;
 };
 

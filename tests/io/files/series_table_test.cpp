@@ -49,6 +49,22 @@ TEST(SeriesTable, ARestartDropsWhatCameAfterIt) {
   EXPECT_EQ(contents(path), "time [s],q_star [1],speed [m/s]\n0,0,0\n0.25,1,2\n0.5,2,4\n0.6,7,8\n");
 }
 
+// Rows every 0.1 s, the last of a run at 0.25 s and the next at 0.3 s.
+TEST(SeriesTable, TellsThatRowsAreMissing) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "series.csv";
+  const auto gap_from = [&](double continue_from) {
+    if (rank_of(MPI_COMM_WORLD) == 0)
+      testing::put(path, "time [s],q_star [1],speed [m/s]\n0,0,0\n0.1,1,2\n0.2,1,2\n0.25,1,2\n0.3,1,2\n");
+    MPI_Barrier(MPI_COMM_WORLD);
+    return SeriesTable(MPI_COMM_WORLD, path, columns, continue_from).gap();
+  };
+  EXPECT_EQ(gap_from(0.399), "");
+  EXPECT_EQ(gap_from(0.6), rank_of(MPI_COMM_WORLD) == 0 ? "the last row of series.csv is that of 0.3 s, and those from "
+                                                          "there to 0.6 s are missing"
+                                                        : "");
+}
+
 TEST(SeriesTable, ARowWithOtherColumnsIsRefusedAndNotWritten) {
   const ScratchFolder folder;
   SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
