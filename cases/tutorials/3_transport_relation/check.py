@@ -13,7 +13,7 @@ from thalweg.literature import FLUME_POINTS
 from thalweg.run import runs_of_sweep
 
 # Shields numbers and q* of the same cells in the whole flume, benchmarks/validation/flume
-WHOLE_FLUME = (0.0227, 0.0276, 0.0465, 0.0673), (0.0131, 0.0320, 0.1720, 0.4080)
+WHOLE_FLUME = (0.023, 0.028, 0.047, 0.063, 0.068), (0.0110, 0.038, 0.180, 0.418, 0.524)
 
 
 def between(shields, points):
@@ -37,7 +37,7 @@ def check(checks, folder):
         f"q* at {tau}, by the power {power:.1f} of the lowest two", rates[0] * (tau / shields[0]) ** power, rate,
         "Zhang et al.",
     )
-    checks.expect("growth of q* from the lowest to the highest slope", rates[-1] / rates[0], 3.0, 12.0)
+    checks.expect("growth of q* from the lowest to the highest slope", rates[-1] / rates[0], 2.0, 12.0)
 
 
 if __name__ == "__main__":
