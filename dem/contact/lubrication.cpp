@@ -15,7 +15,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace thalweg::dem {
@@ -97,9 +96,15 @@ std::int64_t body_number(std::span<const GlobalId> clump, std::size_t slot) {
   return is_member ? clump[slot] : -1 - static_cast<std::int64_t>(slot);
 }
 
-void scale(LubricationLoad& load, double share) {
-  load.force *= share;
-  load.couple *= share;
+// Calls visit(near) for all of these, with the share of each in its load. all: with `surfaces`.
+template <typename Near, typename Visit>
+void visit_shares(std::vector<Near>& all, std::span<const NearPlace> places, const PeriodicBox& box, Visit visit) {
+  const std::vector<double> shares = lubrication_shares(places, box);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    all[n].surfaces.load.force *= shares[n];
+    all[n].surfaces.load.couple *= shares[n];
+    visit(all[n]);
+  }
 }
 
 // Calls visit(first, second, surfaces) where the two grains of a pair are near each other. Pairs: with slots `first`
@@ -127,11 +132,7 @@ void for_each_near_pair(const Grains& grains, const Pairs& pairs, std::span<cons
                       position_of(grains, second), radius_of(grains, first), radius_of(grains, second), near.normal,
                       near.reduced_radius, near.gap});
   });
-  const std::vector<double> shares = lubrication_shares(places, box);
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    scale(all[n].surfaces.load, shares[n]);
-    visit(all[n].first, all[n].second, all[n].surfaces);
-  }
+  visit_shares(all, places, box, [&visit](const Near& near) { visit(near.first, near.second, near.surfaces); });
 }
 
 void add_to_grain(PackedGrain& grain, const NearSurfaces& near) {
@@ -152,19 +153,19 @@ void for_each_near_wall(const Grains& grains, const NeighbourList& list, const S
     for_each_solid_touch(grains, list, around, parameters.reach(), visit_touch);
   };
   if (clump.empty()) return visit_near(visit);
-  std::vector<std::pair<WallTouch, NearSurfaces>> all;
+  struct Near {
+    WallTouch touch;
+    NearSurfaces surfaces;
+  };
+  std::vector<Near> all;
   std::vector<NearPlace> places;
   visit_near([&](const WallTouch& touch, const NearSurfaces& near) {
-    all.emplace_back(touch, near);
+    all.push_back({touch, near});
     places.push_back({body_number(clump, touch.slot), static_cast<std::int64_t>(touch.wall), touch.slot, 0,
                       position_of(grains, touch.slot), Vec3::Zero(), radius_of(grains, touch.slot), 0.0, near.normal,
                       near.reduced_radius, near.gap});
   });
-  const std::vector<double> shares = lubrication_shares(places, around.box);
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    scale(all[n].second.load, shares[n]);
-    visit(all[n].first, all[n].second);
-  }
+  visit_shares(all, places, around.box, [&visit](const Near& near) { visit(near.touch, near.surfaces); });
 }
 
 }  // namespace
