@@ -111,7 +111,7 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     place_prescribed(time(), time() - 0.5 * dt);
     timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
     list_.grains_moved(dt * moving_.speed_bound(!clumps_.empty() || !parameters_.assemblies.empty()));
-    if (s + 1 == sub_steps) keep_acting_state();
+    if (s + 1 == sub_steps) timed(motion_phase_, [&] { keep_acting_state(); });
     evaluate_forces(dt);
     if (s + 1 == sub_steps) break;
     timed(motion_phase_, [&] {

@@ -21,13 +21,12 @@ namespace {
 void require_same_stresses(const ArchiveReader& archive, int width) {
   const std::string name = "grains/system_columns";
   if (!archive.has(name) || archive.integer_attribute(name) == width) return;
+  const bool lacks = archive.integer_attribute(name) < width;
   throw InputError(fmt::format(
       "The checkpoint's grains {} the fluid's stress on them and those of this case {}: "
       "coupling.grain_stress or analysis.stress_balance has been {}; leave it as it was, or begin a new run "
       "from that state with initial.from.",
-      archive.integer_attribute(name) < width ? "lack" : "have",
-      archive.integer_attribute(name) < width ? "have it" : "lack it",
-      archive.integer_attribute(name) < width ? "added" : "taken away"));
+      lacks ? "lack" : "have", lacks ? "have it" : "lack it", lacks ? "added" : "taken away"));
 }
 
 std::vector<bodies::Solid> with_motions(const std::vector<bodies::SolidShape>& shapes,

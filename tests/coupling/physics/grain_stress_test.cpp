@@ -2,12 +2,15 @@
 // the stresslet of a sphere.
 #include "tests/coupling/water_box.hpp"
 
+#include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
+#include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace thalweg::coupling::grain_stress_test {
 namespace {
@@ -59,6 +62,28 @@ TEST(GrainStress, IsNotMeasuredUnlessAskedFor) {
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   system->advance();
   EXPECT_TRUE(system->snapshot().grains.fluid_stress.empty());
+}
+
+TEST(GrainStress, IsNotTakenUpOrDroppedByARestart) {
+  WaterBox box;
+  box.seeds = {glass_sphere(0, Vec3(0.0128, 0.0096, 0.0096))};
+  const Index3 layout = Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD));
+  for (const bool before : {false, true}) {
+    box.grain_stress = before;
+    const auto saved = thalweg::test::saved(*make_system<double>(box, MPI_COMM_WORLD, layout), MPI_COMM_WORLD);
+    box.grain_stress = !before;
+    const auto changed = make_system<double>(box, MPI_COMM_WORLD, layout);
+    std::string said;
+    try {
+      thalweg::test::load(*changed, saved);
+    } catch (const InputError& error) {
+      said = error.what();
+    }
+    EXPECT_NE(
+        said.find(before ? "analysis.stress_balance has been taken away" : "analysis.stress_balance has been added"),
+        std::string::npos)
+        << said;
+  }
 }
 
 // A sphere held in the middle between two plates that slide against each other, in slow flow. Batchelor (1970), J.
