@@ -42,12 +42,14 @@ bool has_room_at_random(const PeriodicBox& box, const GrainsToPlace& grains) {
   return true;
 }
 
-InputError too_many_at_random(const GrainsToPlace& grains, std::int64_t placed) {
+// beside_others: grains of other populations had their places before.
+InputError too_many_at_random(const GrainsToPlace& grains, bool beside_others, std::int64_t placed) {
   const Vec3 extent = grains.region.upper - grains.region.lower;
-  return InputError(
-      fmt::format("{} grains do not fit at random in {:g} x {:g} x {:g} m: {} did; use fewer or smaller "
-                  "grains, a larger region, or another placement.pattern (dense or uniform).",
-                  grains.count, extent.x(), extent.y(), extent.z(), placed));
+  return InputError(fmt::format(
+      "{} grains do not fit at random in {:g} x {:g} x {:g} m{}: {} did; use fewer or smaller grains, a larger region, "
+      "or another placement.pattern (dense or uniform){}.",
+      grains.count, extent.x(), extent.y(), extent.z(), beside_others ? " beside those of other populations" : "",
+      placed, beside_others ? ", or give the other populations less room" : ""));
 }
 
 // Place that a grain tries or has been given.
@@ -179,7 +181,9 @@ std::vector<PlacedGrain> random_packing(const PackingDomain& ranks, const Grains
     all = placing.place(from, below);
     if (from <= smallest) break;
   }
-  if (!all) throw too_many_at_random(grains, placing.placed_by_all());
+  if (!all)
+    throw too_many_at_random(grains, ranks.sum(static_cast<std::int64_t>(obstacles.size())) > 0,
+                             placing.placed_by_all());
   return placing.placed();
 }
 

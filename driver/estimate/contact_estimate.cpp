@@ -107,10 +107,10 @@ double largest_stokes_number(const Case& c) {
 std::optional<ReboundTimes> rebound_times(const Case& c) {
   if (!has_fluid(c) || c.grains.empty() || largest_stokes_number(c) < least_stokes_number_of_a_rebound)
     return std::nullopt;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const std::size_t p : free_populations(c)) smallest = std::min(smallest, c.grains[p].smallest_diameter());
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (const std::size_t p : free_populations(c)) narrowest = std::min(narrowest, c.grains[p].narrowest());
   return ReboundTimes{shortest_contact(c) / fluid_time_step(c),
-                      0.5 * std::numbers::pi * std::sqrt(3.0) * smallest / c.domain.spacing};
+                      0.5 * std::numbers::pi * std::sqrt(3.0) * narrowest / c.domain.spacing};
 }
 
 std::optional<DryRestitution> dry_restitution(const Case& c) {

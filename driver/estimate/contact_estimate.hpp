@@ -28,7 +28,7 @@ double least_stiffness(const Case& c);
 // 1: below this Stokes number the fluid stops every grain that touches another (Joseph et al. 2001).
 inline constexpr double least_stokes_number_of_a_rebound = 10.0;
 
-// Duration of the shortest contact, and of sound around the smallest free grain, in fluid steps. A shorter contact
+// Duration of the shortest contact, and of sound around the narrowest free grain, in fluid steps. A shorter contact
 // reverses the grain without its added mass, and the grain loses momentum to that water
 // (benchmarks/validation/rebound_in_water). None without grains in a fluid, or where none of them can rebound.
 struct ReboundTimes {

@@ -25,7 +25,7 @@ std::vector<std::size_t> populations_of_common_stiffness(const Case& c) {
 }
 
 double default_steps(const Case& c, const beds::Population& grains) {
-  return fluid_steps_per_cell * grains.smallest_diameter() / c.domain.spacing;
+  return fluid_steps_per_cell * grains.narrowest() / c.domain.spacing;
 }
 
 // N/m, with which the shortest contact lasts as long as `duration` (s) says of each population.

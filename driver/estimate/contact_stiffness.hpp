@@ -1,7 +1,8 @@
 // The stiffness of linear contacts where a case does not give it as a number, and the sub-steps that follow.
 //
-//   t_c = 4 (d/dx) dt        of grains in a fluid, by default: longer than sound takes around a grain,
-//                            pi/2 sqrt(3) d/dx steps, so that the water that moves with it takes part in its rebound
+//   t_c = 4 (d/dx) dt        of grains in a fluid, by default; d: the diameter, or the shortest axis of a clump. It is
+//                            longer than sound takes around a grain, pi/2 sqrt(3) d/dx steps, so that the water that
+//                            moves with it takes part in its rebound
 //   k_n = m* ((pi/t_c)^2 + (gamma/(2 m*))^2)                  and at least what keeps overlaps small; k_t = 2/7 k_n
 //
 // m*: of two of the lightest grains that are free and have no stiffness of their own. With 2/7 a grain that sticks

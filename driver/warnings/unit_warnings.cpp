@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace thalweg::driver {
 
@@ -24,10 +25,18 @@ constexpr double thickest_fluid = 0.1;                               // m^2/s
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
+// m, of grains that are wider than any in SI units.
+std::optional<double> diameter_of_boulders(const Case& c) {
+  std::optional<double> diameter;
+  if (c.system == SystemKind::resolved && !c.grains.empty()) diameter = reference_grain(c).diameter;
+  if (c.system == SystemKind::continuum) diameter = c.continuum.grains.diameter;
+  return diameter && *diameter > largest_boulder ? diameter : std::nullopt;
+}
+
 Warnings lengths_in_millimetres(const Case& c) {
-  if (c.grains.empty() || c.system != SystemKind::resolved) return {};
-  const double diameter = reference_grain(c).diameter;
-  if (diameter <= largest_boulder) return {};
+  const std::optional<double> boulders = diameter_of_boulders(c);
+  if (!boulders) return {};
+  const double diameter = *boulders;
   return {
       fmt::format("The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm are "
                   "{:g} m.",
@@ -81,12 +90,17 @@ Warnings gravity_in_millimetres(const Case& c) { return gravity_in(c, "mm", 1000
 
 // Water has 1 mm^2/s, and nothing that flows 0.1 m^2/s.
 Warnings viscosity_in_square_millimetres(const Case& c) {
-  const double viscosity = c.fluid.kinematic_viscosity;
-  if (!has_fluid(c) || c.fluid.density < lightest_liquid || viscosity < thickest_fluid) return {};
+  const bool column = c.system == SystemKind::continuum;
+  const double viscosity = column ? c.continuum.fluid.kinematic_viscosity : c.fluid.kinematic_viscosity,
+               density = column ? c.continuum.fluid.density : c.fluid.density;
+  if (!(column || has_fluid(c)) || density < lightest_liquid || viscosity < thickest_fluid) return {};
   return {{fmt::format("A kinematic viscosity of {0:g} m^2/s looks like {0:g} mm^2/s, which are {1:g} m^2/s", viscosity,
                        1e-6 * viscosity),
            {{{exact_change("fluid.kinematic_viscosity", 1e-6 * viscosity, 6,
-                           [](Case& other, double to) { other.fluid.kinematic_viscosity = to; })},
+                           [column](Case& other, double to) {
+                             (column ? other.continuum.fluid.kinematic_viscosity : other.fluid.kinematic_viscosity) =
+                                 to;
+                           })},
              {}}}}};
 }
 
@@ -105,6 +119,18 @@ Warnings densities_in_grams(const Case& c) {
                        {{remedy, {}}}});
     }
   return found;
+}
+
+Warnings column_in_grams(const Case& c) {
+  if (c.system != SystemKind::continuum || c.continuum.grains.density >= lightest_solid) return {};
+  const double grains = c.continuum.grains.density, fluid = c.continuum.fluid.density;
+  return {
+      {fmt::format("Grains of {0:g} kg/m^3 look like {0:g} g/cm^3, which are {1:g} kg/m^3", grains, 1000.0 * grains),
+       {{{exact_change("grains.density", 1000.0 * grains, density_digits,
+                       [](Case& other, double to) { other.continuum.grains.density = to; }),
+          exact_change("fluid.density", 1000.0 * fluid, density_digits,
+                       [](Case& other, double to) { other.continuum.fluid.density = to; })},
+         {}}}}};
 }
 
 // Beside grains in kg/m^3. A gas so dense and with so little viscosity is under a pressure of tens of bars.
@@ -188,8 +214,8 @@ bool has_other_lengths(const Case& c) {
 std::vector<WarningRule> unit_rules() {
   return {lengths_in_millimetres, box_in_millimetres,     many_cells_in_millimetres,
           gravity_in_centimetres, gravity_in_millimetres, viscosity_in_square_millimetres,
-          densities_in_grams,     liquid_in_grams,        slope_in_degrees,
-          friction_in_degrees,    angles_in_degrees};
+          densities_in_grams,     column_in_grams,        liquid_in_grams,
+          slope_in_degrees,       friction_in_degrees,    angles_in_degrees};
 }
 
 }  // namespace thalweg::driver

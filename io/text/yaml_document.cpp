@@ -86,13 +86,15 @@ bool is_control(char c) {
   return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7F;
 }
 
+std::string place_of_byte(std::string_view text, std::size_t at, const PlaceOf& location_of) {
+  YAML::Mark mark;
+  mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  return location_of(mark);
+}
+
 // Refuses bytes that YAML does not allow in a text, and that its parser might take for the end of the file.
 void refuse_odd_bytes(std::string_view text, const PlaceOf& location_of) {
-  const auto place_at = [&](std::size_t at) {
-    YAML::Mark mark;
-    mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-    return location_of(mark);
-  };
+  const auto place_at = [&](std::size_t at) { return place_of_byte(text, at, location_of); };
   if (const std::size_t at = first_not_utf8(text); at < text.size())
     throw InputError(fmt::format("{}: the byte {:#04x} here is not UTF-8; save the text as UTF-8.", place_at(at),
                                  static_cast<unsigned char>(text[at])));
@@ -105,6 +107,15 @@ void refuse_odd_bytes(std::string_view text, const PlaceOf& location_of) {
     throw InputError(fmt::format("{}: a control character, {:#04x}, stands here; remove it, or save the file as text.",
                                  place_at(static_cast<std::size_t>(odd - text.begin())),
                                  static_cast<unsigned char>(*odd)));
+}
+
+// The first tab before the words of a line; npos if there is none.
+std::size_t tab_in_indentation(std::string_view text) {
+  for (std::size_t at = text.find('\t'); at != std::string_view::npos; at = text.find('\t', at + 1)) {
+    const std::size_t before = text.find_last_not_of(' ', at == 0 ? 0 : at - 1);
+    if (at == 0 || before == std::string_view::npos || text[before] == '\n') return at;
+  }
+  return std::string_view::npos;
 }
 
 YamlNode parsed(const std::string& text, const PlaceOf& location_of, const std::string& whole_place,
@@ -122,6 +133,9 @@ YamlNode parsed(const std::string& text, const PlaceOf& location_of, const std::
     return converted(documents.empty() ? YAML::Node() : documents.front(), whole_place, key_path, location_of, 0,
                      count);
   } catch (const YAML::Exception& error) {
+    if (const std::size_t tab = tab_in_indentation(text); tab != std::string::npos)
+      throw InputError(fmt::format("{}: this line is indented with a tab, which YAML does not allow; use spaces.",
+                                   place_of_byte(text, tab, location_of)));
     const std::string place = error.mark.is_null() ? whole_place : location_of(error.mark);
     throw InputError(
         fmt::format("{}: this is not valid YAML: {}; look for a missing colon, bracket or quote and for "

@@ -152,13 +152,21 @@ TEST(SeedsOfRank, TooManyPlacedTogetherAreRefusedOnAllRanks) {
 
 // All ranks say how many did.
 TEST(SeedsOfRank, ThatDoNotFitAreRefusedOnAllRanks) {
-  std::string message;
-  try {
-    of_this_rank({glass(1100, PlacementPattern::random, 0.0, 0.06)});
-  } catch (const InputError& error) {
-    message = error.what();
-  }
-  EXPECT_NE(message.find("grains.0: 1100 grains do not fit at random"), std::string::npos) << message;
+  const auto message_of = [](const std::vector<Population>& populations) -> std::string {
+    try {
+      of_this_rank(populations);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string alone = message_of({glass(1100, PlacementPattern::random, 0.0, 0.06)});
+  EXPECT_NE(alone.find("grains.0: 1100 grains do not fit at random"), std::string::npos) << alone;
+  EXPECT_EQ(alone.find("other populations"), std::string::npos) << alone;
+  // 600 would fit without the dense ones, which are placed before wherever they stand in the list.
+  const std::string beside =
+      message_of({glass(600, PlacementPattern::random, 0.0, 0.06), glass(550, PlacementPattern::dense, 0.0, 0.04)});
+  EXPECT_NE(beside.find("beside those of other populations"), std::string::npos) << beside;
 }
 
 GrainParameters usual() {

@@ -44,6 +44,8 @@ run: {until: 30}
 output: {series: {every: 0.01}}
 """
 
+COLUMN = (CASES / "continuum/case.yaml").read_text()
+
 # Water that goes round in an open reach.
 STREAM = """
 system: fluid
@@ -231,6 +233,9 @@ VARIATIONS = [
         [*CLEAR, "domain.size=[60, 20, 40]", "domain.spacing=0.5", "fluid.time_step=null"],
         ["looks like millimetres", "domain.spacing: 0.5 mm is 0.0005 m"],
     ),
+    (COLUMN, ["grains.diameter=5"], ["The grains are 5 m wide", "5 mm are 0.005 m"]),
+    (COLUMN, ["grains.density=2.55", "fluid.density=1"], ["grains.density: 2550 and fluid.density: 1000"]),
+    (COLUMN, ["fluid.kinematic_viscosity=1"], ["fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity.slope=1.15"], ["looks like an angle in degrees", "gravity.slope: 0.0201"]),   # tan(1.15 degrees)
     (WATER, ["grains.0.count=70", "gravity.slope=0.3"], ["slides as a whole"]),   # 1.3 diameters of bed
     (

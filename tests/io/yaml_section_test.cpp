@@ -288,6 +288,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"old_macintosh", "paint: red\rlength: 2\r", "",
             "FILE:1: a carriage return without a line feed stands here or below; save the text with the line ends of "
             "Unix or Windows."},
+        Bad{"tab", "paint: red\nplaces:\n \tseats: 3\n", "",
+            "FILE:3: this line is indented with a tab, which YAML does not allow; use spaces."},
         Bad{"no_sections_at_all", "just words\n", "",
             "FILE:1: expected keys with values, for example system: resolved."}),
     [](const auto& bad) { return bad.param.name; });

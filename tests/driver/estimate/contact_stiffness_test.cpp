@@ -59,6 +59,17 @@ TEST(ContactStiffness, SuitsTheGrainsThatTouchTheShortest) {
   EXPECT_EQ(shortest_contact(own), pi * std::sqrt(0.5 * own.grains[1].lightest_mass() / 5000.0));
 }
 
+// Sound goes around the whole clump, so that a small member within a ball changes nothing.
+TEST(ContactStiffness, GoesByTheShortestAxisOfAClump) {
+  const std::string ball = "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 1}";
+  const Case one = read_text(flume, {ball + "]}"}),
+             two = read_text(flume, {ball + ", {position: [0.2, 0, 0], diameter: 0.4}]}"});
+  EXPECT_LT(two.grains[0].smallest_diameter(), 0.41 * glass_diameter);
+  EXPECT_NEAR(default_contact_steps(two), 4.0 * cells, 0.01 * 4.0 * cells);  // axes by sums over points
+  EXPECT_NEAR(default_contact_steps(two), default_contact_steps(one), 1e-9);
+  EXPECT_FALSE(rebounds_too_weakly(two));
+}
+
 TEST(ContactStiffness, FollowsFromADurationInSecondsOrFluidSteps) {
   for (const std::string duration : {"3.0e-4", "{seconds: 3.0e-4}", "{fluid_steps: 15}"}) {
     const Case c = read_text(flume, {"contact.duration=" + duration});
