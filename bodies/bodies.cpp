@@ -87,7 +87,7 @@ void Bodies<Real>::resize_to_slots() {
 template <typename Real>
 void Bodies<Real>::begin_step(bool recording) {
   totals_ = {};
-  by_height_.assign(recording ? static_cast<std::size_t>(2 * fluid_.indexing().size()[2] + 1) : 0, {});
+  by_height_ = recording ? MomentumByHeight(solids(), fluid_.indexing().size()[2]) : MomentumByHeight();
   map_.begin_update();
   for (LinkBody& body : bodies_) body.clear_sums();
   if (options_.moments) moments_.assign(bodies_.size(), {});
@@ -205,7 +205,7 @@ void Bodies<Real>::remove_all() {
 }
 
 template <typename Real>
-void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) const {
+void Bodies<Real>::apply_links_on_copies(MomentumByHeight* by_height) const {
   CHECK(settled_ && linked_);
   std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
   InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
@@ -213,8 +213,8 @@ void Bodies<Real>::apply_links_on_copies(std::vector<FixedVec3>* by_height) cons
 }
 
 template <typename Real>
-const std::vector<FixedVec3>& Bodies<Real>::momentum_by_height() {
-  CHECK(!by_height_.empty());  // begin_step(true)
+const MomentumByHeight& Bodies<Real>::momentum_by_height() {
+  CHECK(!by_height_.on_grains.empty());  // begin_step(true)
   apply_links_on_copies(&by_height_);
   return by_height_;
 }
@@ -252,9 +252,10 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
   const Vec3 wall = body.velocity + body.angular_velocity.cross(arm);
   const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
   body.force += FixedVec3::from(kept);
-  if (!by_height_.empty()) by_height_[static_cast<std::size_t>(2 * plane + 1)] += FixedVec3::from(kept);
+  const std::ptrdiff_t slot = &body - bodies_.data();
+  if (!by_height_.on_grains.empty()) by_height_.at(slot, 2 * plane + 1) += FixedVec3::from(kept);
   body.torque += FixedVec3::from(torque);
-  if (options_.moments) moments_[static_cast<std::size_t>(&body - bodies_.data())].add(kept, arm);
+  if (options_.moments) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
   totals_.kept += kept;
   totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }

@@ -116,10 +116,10 @@ public:
 
   // Fills the slots that links fill, as the sweep will do again, and changes no body. by_height: as for
   // InterpolatedBounceBack.
-  void apply_links_on_copies(std::vector<FixedVec3>* by_height = nullptr) const;
+  void apply_links_on_copies(MomentumByHeight* by_height = nullptr) const;
   // The momentum that links and covered cells give to bodies in the step that was begun with recording, by half planes
   // of cells (InterpolatedBounceBack); before its sweep, whose slots it fills as well.
-  const std::vector<FixedVec3>& momentum_by_height();
+  const MomentumByHeight& momentum_by_height();
 
 private:
   void add_solids(MPI_Comm communicator);
@@ -142,7 +142,7 @@ private:
   std::vector<LinkBody> bodies_;         // by slot
   std::vector<double> surrounding_;      // by slot
   std::vector<FixedTensor> moments_;     // by slot; empty unless measured
-  std::vector<FixedVec3> by_height_;     // empty unless recording
+  MomentumByHeight by_height_;           // empty unless recording
   bool settled_ = true, linked_ = true;  // cells and links are those of the present positions
   ExchangeTotals totals_;
 };

@@ -44,6 +44,10 @@ int thin_layers(double box_height, double window) {
   return std::max(1, static_cast<int>(std::lround(thin_layers_a_window * box_height / window)));
 }
 
+double obstacles_above(const VolumeBelow& below, double height) {
+  return obstacles_between(below, height / below.spacing, static_cast<double>(below.volume.size() - 1));
+}
+
 double bulk_solid_fraction(const VolumeBelow& below) {
   constexpr double lower = 0.1, upper = 0.5;  // shares of the volume
   const double whole = below.volume.back();

@@ -5,6 +5,7 @@
 #include "core/parallel/ranks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -24,25 +25,43 @@ std::map<GlobalId, double> shares_of_members(const GrainView& grains) {
 }  // namespace
 
 BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness,
-                     std::vector<GlobalId> obstacles)
+                     const BedObstacles& obstacles)
     : communicator_(communicator),
       box_(box),
       layers_(thin_layers(box.size.z(), window)),
       thickness_(box.size.z() / layers_),
       width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
-      obstacles_(std::move(obstacles)) {}
+      obstacles_(obstacles.spheres),
+      solids_below_(obstacles.solids_below ? obstacles.solids_below(layers_) : std::vector<double>()) {}
 
 BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
-  std::vector<double> grains = grains_below(snapshot), obstacles = obstacles_below(snapshot);
-  if (!obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count)
-    grains = std::exchange(obstacles, {});
+  std::vector<double> grains = grains_below(snapshot), obstacles = spheres_below(snapshot);
+  if (are_the_bed(snapshot)) grains = std::exchange(obstacles, {});
+  if (obstacles.empty())
+    obstacles = solids_below_;
+  else
+    for (std::size_t k = 0; k < solids_below_.size(); ++k) obstacles[k] += solids_below_[k];
   const VolumeBelow below{grains, thickness_, box_.size.x() * width_, obstacles};
-  return {bed_height(below, thin_layers_a_window / 2), bulk_solid_fraction(below)};
+  const double height = bed_height(below, thin_layers_a_window / 2);
+  return {height, bulk_solid_fraction(below), obstacles_above(below, height)};
+}
+
+bool BedLayers::are_the_bed(const Snapshot& snapshot) const {
+  return !obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count;
+}
+
+double BedLayers::force_on_obstacles(const Snapshot& snapshot) const {
+  if (obstacles_.empty() || are_the_bed(snapshot)) return 0.0;
+  const GrainView& grains = snapshot.grains;
+  return reproducible_sums_by_bin(communicator_, 1, 1, [&](const TermTaker& take) {
+    for (std::size_t i = 0; i < grains.id.size(); ++i)
+      if (is_obstacle(grains.id[i])) take(0, std::array{grains.fluid_force[i].x()});
+  })[0];
 }
 
 bool BedLayers::is_obstacle(GlobalId id) const { return std::binary_search(obstacles_.begin(), obstacles_.end(), id); }
 
-std::vector<double> BedLayers::obstacles_below(const Snapshot& snapshot) const {
+std::vector<double> BedLayers::spheres_below(const Snapshot& snapshot) const {
   if (obstacles_.empty()) return {};
   const GrainView& grains = snapshot.grains;
   std::vector<SphereInBed> spheres;

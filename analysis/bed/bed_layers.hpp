@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/bed/bed_height.hpp"
+#include "analysis/observer/run_context.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
 #include "core/sums/reproducible_sum.hpp"
@@ -15,23 +16,28 @@ namespace thalweg::analysis {
 
 class BedLayers {
 public:
-  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres. obstacles: the ids,
-  // ascending, of spheres that are no grains of the bed but stand in it; where there is nothing else, they are the bed.
+  // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres. Obstacles are the
+  // bed where there are no other grains.
   BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0,
-            std::vector<GlobalId> obstacles = {});
+            const BedObstacles& obstacles = {});
 
   struct Bed {
-    double height;          // m, above the floor of the box; 0 without grains
-    double solid_fraction;  // of the bulk
+    double height;           // m, above the floor of the box; 0 without grains
+    double solid_fraction;   // of the bulk
+    double obstacles_above;  // m^3, of obstacles above that height
   };
   Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
   double width() const { return width_; }   // m, of the bed
+  // N, along x, of the fluid on the spheres that are obstacles; 0 where they are the bed. The same bits on any ranks;
+  // collective.
+  double force_on_obstacles(const Snapshot& snapshot) const;
 
 private:
   bool is_obstacle(GlobalId id) const;
+  bool are_the_bed(const Snapshot& snapshot) const;
   std::vector<double> grains_below(const Snapshot& snapshot) const;
   void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares, const TermTaker& take) const;
-  std::vector<double> obstacles_below(const Snapshot& snapshot) const;
+  std::vector<double> spheres_below(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;
   PeriodicBox box_;
@@ -39,6 +45,7 @@ private:
   double thickness_;  // m, of a thin layer
   double width_;
   std::vector<GlobalId> obstacles_;
+  std::vector<double> solids_below_;  // m^3, at the heights of the layers; empty: there are none
 };
 
 }  // namespace thalweg::analysis

@@ -23,6 +23,7 @@ struct FluidContext {
   int side_walls = 0;                // number of walls across y that hold the flow back: 0 to 2
   bool top_drags = false;            // the face z_high exchanges shear with the flow
   bool top_moves = false;            // the top moves along x
+  bool has_solids = false;           // solids take momentum from it
 };
 
 // Context of a run with a model fluid (model_fluid/model_fluid.hpp).
@@ -46,6 +47,13 @@ struct HeldGrains {
 };
 bool is_held(const std::vector<HeldGrains>& held, GlobalId id);
 
+// What stands in a bed and is none of its grains: a sill, a pier, a boulder.
+struct BedObstacles {
+  std::vector<GlobalId> spheres = {};  // ids, ascending
+  // m^3, of solids that stand still, at layers + 1 heights from the floor of the box to its top; empty: there are none.
+  std::function<std::vector<double>(int layers)> solids_below = {};
+};
+
 struct GrainContext {
   std::vector<PopulationContext> populations;
   double reference_diameter = 0.0;  // m, d of q* and the Shields number
@@ -57,8 +65,7 @@ struct GrainContext {
   // sphere (disk) of its volume; and the edges of classes that suit them, rising.
   double smallest_free = 0.0, largest_free = 0.0;
   std::vector<double> size_class_edges = {};
-  // Ids, ascending, of spheres that are no grains of the bed but stand in it: a sill, a pier, a boulder.
-  std::vector<GlobalId> obstacles = {};
+  BedObstacles obstacles = {};
   std::vector<std::int64_t> supplied = {};  // of the grains that come in later, as PopulationIds has it
 
   using Force = std::function<Vec3(double mass, double radius)>;  // N, on a sphere (kg, m)

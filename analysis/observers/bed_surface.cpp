@@ -40,13 +40,13 @@ static StaticPixels pixels_of(MPI_Comm communicator, const PeriodicBox& box, con
 }
 
 BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
-                       const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles)
+                       const std::optional<BedFlow>& flow, double disk_thickness, const BedObstacles& obstacles)
     : communicator_(communicator),
       box_(box),
       keys_(keys),
       flow_(flow),
       diameter_(diameter),
-      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, std::move(obstacles)),
+      layers_(communicator, box, keys.layer.value_or(diameter), disk_thickness, obstacles),
       pixels_(pixels_of(communicator, box, keys, diameter)),
       surface_sums_(static_cast<std::size_t>(pixels_.columns()), 0.0),
       surface_counts_(surface_sums_) {
@@ -82,9 +82,10 @@ void BedSurface::measure(const Snapshot& snapshot) {
   bed_stress_ = flow_->driving_stress * hydraulic_radius();
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
-  const double on_top = -drive.on_top.x() / (box_.size.x() * box_.size.y());
-  const double width = layers_.width();
-  bed_stress_ = (drive.body_force.x() * flow_depth() + on_top) * width / (width + flow_->side_walls * flow_depth());
+  const double plan = box_.size.x() * box_.size.y(), width = layers_.width();
+  const double taken = drive.on_top.x() + drive.on_solids.x() + layers_.force_on_obstacles(snapshot);
+  const double left = drive.body_force.x() * (flow_depth() - bed.obstacles_above / plan) - taken / plan;
+  bed_stress_ = left * width / (width + flow_->side_walls * flow_depth());
 }
 
 double BedSurface::flow_depth() const { return box_.size.z() - bed_height_; }
@@ -215,7 +216,8 @@ std::optional<BedFlow> bed_flow(const RunContext& run) {
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
   flow.driving_stress = run.fluid->density * run.gravity.x();
-  flow.measured = run.fluid->steered || run.fluid->top_drags;
+  flow.measured =
+      run.fluid->steered || run.fluid->top_drags || run.fluid->has_solids || !run.grains->obstacles.spheres.empty();
   return flow;
 }
 

@@ -8,8 +8,11 @@
 //                     f     = rho_f g_x                    N/m^3, g_x: g times the sine of the slope
 //   Shields number    tau*  = tau_b / ((rho_s - rho_f) g d)
 //
-// With a controlled mean velocity, f is the body force of the moment; a top of the box that drives or drags the flow
-// adds its measured stress tau_top (Pa, on the fluid, along x):
+// With a controlled mean velocity, f is the body force of the moment. A top of the box that drives or drags the flow
+// adds its measured stress tau_top (Pa, on the fluid, along x). Solids and other obstacles take the measured force F_o
+// from the flow, and fill the volume V_o above the bed:
+//
+//   tau_b = [f (H - V_o/A) + tau_top - F_o/A] W / (W + n H)                       A: plan of the box
 #pragma once
 
 #include "analysis/bed/bed_layers.hpp"
@@ -50,7 +53,7 @@ struct BedFlow {
   int side_walls = 0;           // those that hold the flow back
   double driving_stress = 0.0;  // Pa/m: rho_f g_x
   double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
-  bool measured = false;        // force and stress at the top are those of the moment (FluidSource::drive())
+  bool measured = false;        // the forces are those of the moment (FluidSource::drive())
 };
 
 class BedSurface : public Observer {
@@ -58,7 +61,7 @@ public:
   // diameter: m, that stands for all grains. disk_thickness: m, 0: spheres. obstacles: as BedLayers has them. The box
   // must end in walls along z.
   BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedSurfaceKeys& keys, double diameter,
-             const std::optional<BedFlow>& flow, double disk_thickness, std::vector<GlobalId> obstacles = {});
+             const std::optional<BedFlow>& flow, double disk_thickness, const BedObstacles& obstacles = {});
 
   std::string name() const override { return "bed_surface"; }
   double every() const override { return keys_.every; }

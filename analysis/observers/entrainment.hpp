@@ -55,17 +55,17 @@ ObserverMemory memory_of(const EntrainmentKeys& keys, const RunContext& run, con
 
 // Settings of a run: the ids ascending, and values that follow from its step and its grains.
 struct EntrainmentSettings : EntrainmentKeys {
-  double interval = 0.0;            // s, between samples
-  std::int64_t refresh_steps = 0;   // between two selections of the surface grains
-  double window = 0.0;              // m, over which the solid fraction is averaged for the bed height
-  double diameter = 0.0;            // m, the depth below the bed height that belongs to its surface
-  double moving_speed = 0.0;        // m/s
-  std::vector<HeldGrains> held;     // grains that cannot move
-  std::vector<GlobalId> obstacles;  // ids, as in BedLayers
-  bool clumps = false;              // there are some, or may be
-  bool recirculation = false;       // grains may be taken out of the box and put in elsewhere between two samples
-  GrainContext::Force weight;       // submerged
-  GrainContext::Force buoyancy;     // as in torques_about()
+  double interval = 0.0;           // s, between samples
+  std::int64_t refresh_steps = 0;  // between two selections of the surface grains
+  double window = 0.0;             // m, over which the solid fraction is averaged for the bed height
+  double diameter = 0.0;           // m, the depth below the bed height that belongs to its surface
+  double moving_speed = 0.0;       // m/s
+  std::vector<HeldGrains> held;    // grains that cannot move
+  BedObstacles obstacles;
+  bool clumps = false;           // there are some, or may be
+  bool recirculation = false;    // grains may be taken out of the box and put in elsewhere between two samples
+  GrainContext::Force weight;    // submerged
+  GrainContext::Force buoyancy;  // as in torques_about()
 };
 
 class Entrainment : public Observer {

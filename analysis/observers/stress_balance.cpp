@@ -74,7 +74,6 @@ StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decompo
     : MeanObserver(communicator, StressBalanceKeys::section, keys.from, keys.every),
       n_(decomposition.cells()),
       spacing_(decomposition.spacing()),
-      side_walls_(!decomposition.periodic()[0] || !decomposition.periodic()[1]),
       layers_(n_[2], spacing_, keys.layer.value_or(layer)),
       scales_(scales),
       held_(std::move(held)),
@@ -113,7 +112,7 @@ void StressBalance::add_fluid(const MomentumBudget& budget) {
   driving_.back() += budget.on_top.x();
   for (std::size_t h = 0; h < given_.size(); ++h) {
     given_[h] += budget.on_grains[h].x();
-    sides_[h] += budget.on_sides[h].x();
+    sides_[h] += budget.on_sides[h].x() + budget.on_solids[h].x();
   }
 }
 

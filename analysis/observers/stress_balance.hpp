@@ -20,7 +20,7 @@
 // Totals of xz, all means over the layer:
 //   sum of stresses   all of the above added up: grains count with their mean stress wherever they are cut
 //   total stress      the same with grains cut where the layer is: what acts on the parts above a plane
-//   side wall stress  what side walls take of fluid and grains above the plane
+//   side wall stress  what side walls and solids take of fluid and grains above the plane
 //   driving stress    top, on fluid and on grains + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi,
 //                     and of what holds held grains
 // In steady state total stress and side wall stress together are the driving stress.
@@ -79,9 +79,10 @@ public:
   bool needs_momentum() const override { return true; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
-  // maximum; bed_stress (Pa): the driving stress there less the side walls' (its largest where there is no bed);
-  // largest_difference (1): of the total stress from the driving stress less the side walls', over the bed stress;
-  // largest_difference_at (m); and of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
+  // maximum; bed_stress (Pa): the driving stress there less that of side walls and solids (its largest where there is
+  // no bed); largest_difference (1): of the total stress from the driving stress less the side walls', over the bed
+  // stress; largest_difference_at (m); and of the sum of stresses, largest_difference_of_sum,
+  // largest_difference_of_sum_at.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
@@ -146,9 +147,8 @@ private:
   std::vector<LayerMeans> all_means() const;
   std::size_t stored_size() const;
 
-  Index3 n_;         // cells of the domain
-  double spacing_;   // m
-  bool side_walls_;  // x or y is not periodic
+  Index3 n_;        // cells of the domain
+  double spacing_;  // m
   CellLayers layers_;
   BalanceScales scales_;
   std::vector<HeldGrains> held_;

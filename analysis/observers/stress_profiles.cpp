@@ -199,6 +199,7 @@ std::vector<Diagnostic> StressBalance::results() const {
 std::vector<std::string> StressBalance::remarks() const {
   if (measurements() == 0) return {"stress balance: nothing was measured"};
   const std::vector<Diagnostic> r = results();
+  const bool at_sides = std::any_of(sides_.begin(), sides_.end(), [](double force) { return force != 0.0; });
   const auto value = [&r](const std::string& name) {
     return std::find_if(r.begin(), r.end(), [&name](const Diagnostic& diagnostic) { return diagnostic.name == name; })
         ->value;
@@ -206,7 +207,7 @@ std::vector<std::string> StressBalance::remarks() const {
   return {fmt::format(
       "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa that this leaves to "
       "the bed, at z = {:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
-      side_walls_ ? " less what the side walls take" : "", 100.0 * value("largest_difference"), value("bed_stress"),
+      at_sides ? " less what side walls and solids take" : "", 100.0 * value("largest_difference"), value("bed_stress"),
       value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
       value("largest_difference_of_sum_at"))};
 }

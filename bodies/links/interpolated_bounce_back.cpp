@@ -16,7 +16,7 @@ template <typename Real>
 InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links,
                                                      const PeriodicBox& box, const LinkOptions& options,
                                                      std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments,
-                                                     std::vector<FixedVec3>* by_height)
+                                                     MomentumByHeight* by_height)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -30,7 +30,7 @@ InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, co
       has_rest_(!options.rest_gradient.isZero(0.0)) {
   CHECK(links.tiles().size() == static_cast<std::size_t>(tiles_.count()));
   CHECK(!moments || moments->size() == bodies.size());
-  CHECK(!by_height || by_height->size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
+  CHECK(!by_height || by_height->on_grains.size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
   lbm::Populations<Real>& populations = fluid.populations();
   for (std::vector<Real>& deviations : deviations_)
     deviations.resize(static_cast<std::size_t>(populations.indexing().plane_stride()));
@@ -356,7 +356,7 @@ template <typename Real>
 void InterpolatedBounceBack<Real>::add_by_height(const Batch& b, const Piece& piece) const {
   for (int k = piece.first; k < piece.end(); ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
-    (*by_height_)[static_cast<std::size_t>(2 * b.plane + 1 + component(b.tag[k], 2))] += {at(0), at(1), at(2)};
+    by_height_->at(piece.body, 2 * b.plane + 1 + component(b.tag[k], 2)) += {at(0), at(1), at(2)};
   }
 }
 

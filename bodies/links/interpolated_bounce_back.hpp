@@ -22,6 +22,7 @@
 
 #include "bodies/links/link_crossings.hpp"
 #include "bodies/links/link_slots.hpp"
+#include "bodies/links/momentum_by_height.hpp"
 #include "bodies/links/tile_prefetch.hpp"
 #include "bodies/links/upstream_bodies.hpp"
 #include "bodies/map/body_options.hpp"
@@ -49,15 +50,14 @@ namespace thalweg::bodies {
 // finish(), one batch later, does the exchange. Meanwhile the populations two planes ahead are prefetched.
 //
 // moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
-// torque is its antisymmetric part. by_height: where given, 2 n_z + 1 sums for the n_z planes of this rank, to which
-// the force of every link is added at the height half a link from its fluid cell: entry h lies h half cells above the
-// block's lower face.
+// torque is its antisymmetric part. by_height: where given, the force of every link is added at the height half a link
+// from its fluid cell.
 template <typename Real>
 class InterpolatedBounceBack {
 public:
   InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
                          const LinkOptions& options, std::vector<LinkBody>& bodies,
-                         std::vector<FixedTensor>* moments = nullptr, std::vector<FixedVec3>* by_height = nullptr);
+                         std::vector<FixedTensor>* moments = nullptr, MomentumByHeight* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -169,7 +169,7 @@ private:
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
   std::vector<FixedTensor>* moments_;  // null: not measured
-  std::vector<FixedVec3>* by_height_;  // null: not measured
+  MomentumByHeight* by_height_;        // null: not measured
   BlockFrame block_;
 
   LinkSlots slots_;

@@ -105,9 +105,10 @@ public:
   struct Drive {
     Vec3 body_force = Vec3::Zero();  // N/m^3, on every cell
     Vec3 on_top = Vec3::Zero();      // N, of the fluid on the whole face z_high, without the reference pressure
+    Vec3 on_solids = Vec3::Zero();   // N, of the fluid on all solids, without the reference pressure
   };
-  // Driving force of the fluid, and its force on the upper face, in the next step. Collective; the same bits on any
-  // number of ranks.
+  // Driving force of the fluid, and its force on the upper face, in the next step; its force on solids in the last one.
+  // Collective; the same bits on any number of ranks.
   virtual Drive drive() const { return {}; }
 };
 
@@ -126,7 +127,7 @@ struct PlaneMomentum {
 struct MomentumBudget {
   std::vector<PlaneMomentum> planes;      // of cells, from the floor
   std::vector<Vec3> on_grains;            // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
-  std::vector<Vec3> on_sides;             // N, on the faces across x and y, by height as on_grains
+  std::vector<Vec3> on_solids, on_sides;  // N, on solids, and on the faces across x and y, by height as on_grains
   Vec3 on_top = Vec3::Zero();             // N, on the face z_high
   Vec3 driving = Vec3::Zero();            // N/m^3, of the force that drives the fluid
   Vec3 driving_of_grains = Vec3::Zero();  // N/m^3, that part of it which the volume of grains feels, too

@@ -79,19 +79,20 @@ std::vector<Vec3> over_ranks(const std::vector<FixedVec3>& entries, const lbm::F
 
 template <typename Real>
 MomentumBudget momentum_budget_of(lbm::Fluid<Real>& fluid, const Units& units, double reference,
-                                  const std::vector<FixedVec3>& on_grains) {
-  CHECK(on_grains.size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
+                                  const bodies::MomentumByHeight& given) {
+  CHECK(given.on_grains.size() == static_cast<std::size_t>(2 * fluid.indexing().size()[2] + 1));
   MomentumBudget budget;
   budget.planes = planes_of(fluid, units);
-  budget.on_grains = over_ranks(on_grains, fluid, units.force());
-  std::vector<FixedVec3> on_sides(on_grains.size());
+  budget.on_grains = over_ranks(given.on_grains, fluid, units.force());
+  budget.on_solids = over_ranks(given.on_solids, fluid, units.force());
+  std::vector<FixedVec3> on_sides(given.on_grains.size());
   budget.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
   budget.on_sides = over_ranks(on_sides, fluid, units.force());
   budget.driving = fluid.parameters().force * (units.stress() / units.spacing);
   return budget;
 }
 
-template MomentumBudget momentum_budget_of(lbm::Fluid<float>&, const Units&, double, const std::vector<FixedVec3>&);
-template MomentumBudget momentum_budget_of(lbm::Fluid<double>&, const Units&, double, const std::vector<FixedVec3>&);
+template MomentumBudget momentum_budget_of(lbm::Fluid<float>&, const Units&, double, const bodies::MomentumByHeight&);
+template MomentumBudget momentum_budget_of(lbm::Fluid<double>&, const Units&, double, const bodies::MomentumByHeight&);
 
 }  // namespace thalweg::coupling

@@ -140,7 +140,10 @@ std::optional<FluidSource::State> LatticeSystem<Real>::state_in(const Index3& ce
 
 template <typename Real>
 FluidSource::Drive LatticeSystem<Real>::drive() const {
-  return drive_of(fluid_, parameters_.units, bodies_.reference_density());
+  Drive drive = drive_of(fluid_, parameters_.units, bodies_.reference_density());
+  if (bodies_.solids() == 0) return drive;
+  for (const Vec3& force : solid_bodies_.loads().forces) drive.on_solids += force * parameters_.units.force();
+  return drive;
 }
 
 template class LatticeSystem<float>;

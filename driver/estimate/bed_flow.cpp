@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace thalweg::driver {
 
@@ -26,19 +28,22 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
   return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
 }
 
+using SolidsBelow = std::function<std::vector<double>(int layers)>;
+
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
 
-double settled_height(const Case& c, const Obstacles& obstacles) {
+double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBelow& solids) {
   const PeriodicBox box = grain_box(c);
   const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
-  const std::vector<double> filled = analysis::union_below(box, obstacles.spheres, layers);
-  analysis::VolumeBelow below{filled, box.size.z() / layers, box.size.x() * box.size.y()};
+  std::vector<double> spheres = analysis::union_below(box, obstacles.spheres, layers);
+  std::vector<double> filled = solids ? solids(layers) : std::vector<double>(spheres.size(), 0.0);
   const double grains = grain_volume(c) - obstacles.volume_of_grains;
+  analysis::VolumeBelow below{spheres, box.size.z() / layers, box.size.x() * box.size.y(), filled};
   constexpr double rounding = 1e-9;
   if (grains <= rounding * obstacles.volume_of_grains)
     return bulk_solid_fraction(below) < loosest_bed ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
-  below.obstacle = filled;
+  for (std::size_t k = 0; k < filled.size(); ++k) filled[k] += spheres[k];
   return filled_height(grains / settled_fraction(c), below);
 }
 
@@ -76,7 +81,9 @@ double slope_for(const FlowNumbers& flow, double shields) {
 
 double settled_height(const Case& c) {
   if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
-  if (const Obstacles obstacles = obstacles_of(c); !obstacles.spheres.empty()) return settled_height(c, obstacles);
+  const Obstacles obstacles = obstacles_of(c);
+  const SolidsBelow solids = solids_below(c);
+  if (solids || !obstacles.spheres.empty()) return settled_height(c, obstacles, solids);
   const double width = c.disks ? c.disks->thickness : c.domain.size.y();
   return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * width);
 }

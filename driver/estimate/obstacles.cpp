@@ -1,11 +1,14 @@
 #include "driver/estimate/obstacles.hpp"
 
 #include "beds/population_seeds.hpp"
+#include "core/geometry/mesh_volume.hpp"
 #include "driver/case/grain_setup.hpp"
+#include "driver/case/solid_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace thalweg::driver {
 
@@ -99,6 +102,21 @@ Obstacles obstacles_of(const Case& c) {
     found.spheres.insert(found.spheres.end(), grain.spheres.begin(), grain.spheres.end());
   }
   return found;
+}
+
+std::function<std::vector<double>(int layers)> solids_below(const Case& c) {
+  std::vector<TriangleMesh> standing = solid_surfaces(c, 0.0);
+  for (std::size_t n = c.solids.size(); n-- > 0;)
+    if (c.solids[n].motion) standing.erase(standing.begin() + static_cast<std::ptrdiff_t>(n));
+  if (standing.empty() || c.disks) return {};
+  return [surfaces = std::move(standing), box = grain_box(c)](int layers) {
+    std::vector<double> below(static_cast<std::size_t>(layers) + 1, 0.0);
+    for (const TriangleMesh& surface : surfaces) {
+      const std::vector<double> one = volume_below(surface, box, layers);
+      for (std::size_t k = 0; k < below.size(); ++k) below[k] += one[k];
+    }
+    return below;
+  };
 }
 
 double solid_volume(const Case& c) {

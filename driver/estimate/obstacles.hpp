@@ -4,12 +4,14 @@
 //   - those that overlap, by more than a twentieth of the smaller diameter: a body built of spheres,
 //   - those at least twice as long as the longest free grain.
 //
-// A place where several overlap counts once. The bed is what is left, in the room that the obstacles leave.
+// A place where several overlap counts once. Solids that stand still are obstacles, too. The bed is what is left, in
+// the room that the obstacles leave.
 #pragma once
 
 #include "analysis/bed/union_of_spheres.hpp"
 #include "driver/case/case.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace thalweg::driver {
@@ -19,6 +21,10 @@ struct Obstacles {
   double volume_of_grains = 0.0;               // m^3, of all of them one by one, as grain_volume() counts them
 };
 Obstacles obstacles_of(const Case& c);
+
+// Volume (m^3) of the solids that stand still below layers + 1 heights from the floor of the box to its top, as
+// analysis::BedObstacles has it; places where two overlap count twice. Empty: there are none.
+std::function<std::vector<double>(int layers)> solids_below(const Case& c);
 
 // m^3, of all grains, with overlaps counted once.
 double solid_volume(const Case& c);

@@ -41,7 +41,8 @@ analysis::FluidContext fluid_context(const Case& c) {
           c.fluid.mean_velocity.has_value(),
           side_walls(c),
           c.domain.faces[top].drags(),
-          c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0};
+          c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0,
+          !c.solids.empty()};
 }
 
 // Sizes of free grains, and the classes that suit them: the sieves of their populations, where they have some.
@@ -65,7 +66,8 @@ analysis::GrainContext grain_context(const Case& c) {
   context.supplied = population_ids(c).supplied;
   context.recirculation =
       std::any_of(c.sinks.begin(), c.sinks.end(), [](const auto& sink) { return sink.recirculation.has_value(); });
-  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.push_back(sphere.id);
+  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.spheres.push_back(sphere.id);
+  context.obstacles.solids_below = solids_below(c);
   if (!has_fluid(c)) return context;
   context.body_force = body_force(c);
   context.submerged_weight = submerged_weight(c);

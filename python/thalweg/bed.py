@@ -68,8 +68,8 @@ def measured_shields_number(run, start, stop):
     """Mean between two times (s) of the Shields number that `analysis.bed_surface` wrote into series.csv."""
     if "shields_number" not in run.series:
         raise RunFolderError(
-            f"{run.folder}: no slope alone drives this flow, so its Shields number needs the stress at the top: "
-            "add analysis.bed_surface to the case."
+            f"{run.folder}: the Shields number of this flow does not follow from its slope alone, but from forces that "
+            "a run measures: add analysis.bed_surface to the case."
         )
     return mean_between(run, "shields_number", start, stop)
 
@@ -95,10 +95,10 @@ def rows_between(run, start, stop):
 
 def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
     """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and
-    slope, or by hydraulic radius beside side walls; else the mean between two times (s) of what the run measured for
-    the surface by solid fraction, and for another one as much more as its hydraulic radius is larger. RunFolderError
-    where that cannot be said, because the top drags on the flow as well."""
-    if run.driven_by_slope:
+    slope, or by hydraulic radius beside side walls; else, and where solids stand in the flow, the mean between two
+    times (s) of what the run measured for the surface by solid fraction, and for another one as much more as its
+    hydraulic radius is larger. RunFolderError where that cannot be said, because the top drags on the flow as well."""
+    if run.driven_by_slope and not run.case.get("solids"):
         return shields_of(
             run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
         )

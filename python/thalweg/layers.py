@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.obstacles import obstacles, union_in_layers
+from thalweg.obstacles import obstacles, solids_in_layers, union_in_layers
 
 UNITS = {"z": "m", "solid_fraction": "1", "velocity": "m/s", "flux": "m/s", "granular_temperature": "m^2/s^2",
          "contact_stress": "Pa", "fluid_stress": "Pa", "rotation_stress": "Pa"}
@@ -44,6 +44,7 @@ class LayerSums:
 
     def __init__(self, edges, area, height=None, thickness=None, run=None):
         self.run, self.obstacle_ids, self.union, self.taken = run, None, None, 0.0
+        self.solids = solids_in_layers(run, edges) if run else 0.0
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
         self.height, self.thickness = height, thickness
         layers = len(edges) - 1
@@ -65,6 +66,7 @@ class LayerSums:
             )
         part = self.parts(frame.position[:, 2], frame.radius)
         self.frames += 1
+        self.taken = self.taken + self.solids
         stands = self.obstacles_in(frame)
         if stands.all():
             part *= (self.union / np.maximum(part.sum(axis=1), 1e-300))[:, None]

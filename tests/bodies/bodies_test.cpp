@@ -60,7 +60,7 @@ TEST_F(BodyContracts, MomentumByHeightIsAskedForBeforeTheStep) {
   bodies_.begin_step();
   EXPECT_THROW(bodies_.momentum_by_height(), ContractError);
   bodies_.begin_step(true);
-  EXPECT_EQ(bodies_.momentum_by_height().size(), 25u);
+  EXPECT_EQ(bodies_.momentum_by_height().on_grains.size(), 25u);
 }
 
 // Tiles in order, because each uses the densities that the one below it has measured.

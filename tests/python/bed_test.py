@@ -8,7 +8,7 @@ import made_up_folder as made_up
 import thalweg
 from thalweg import bed, literature
 from thalweg.layers import LayerSums, disk_below, layer_profiles, parts_in_layers, volume_below
-from thalweg.obstacles import obstacles, union_in_layers
+from thalweg.obstacles import mesh_below, obstacles, union_in_layers
 
 D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
 
@@ -139,6 +139,41 @@ class Layers(made_up.MadeUpFolder):
         layers = profiles["z"] < 9.5 * D
         np.testing.assert_allclose(profiles["solid_fraction"][layers][1:], right, rtol=2e-3)
         self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+
+    def test_solids_that_stand_still_take_their_room(self):
+        # A block over a quarter of the length, as high as half of the box, and another one that moves.
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "solids: [{stl: block.stl}, {stl: blade.stl, motion: {velocity: [1, 0, 0]}}]\n")
+        corners = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+        block = corners * (0.25 * SIZE[0], SIZE[1], 0.5 * SIZE[2])
+        faces = np.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6),
+                          (0, 6, 2), (1, 3, 7), (1, 7, 5)])
+        made_up.write_triangles(
+            self.folder / "solids.vtp", np.vstack([block, block + D]), np.vstack([faces, faces + 8]),
+            {"solid": np.repeat([0, 1], 12)},
+        )
+        made_up.write_index(self.folder / "solids.pvd", [(0.0, "solids.vtp")])
+        places = self.bed_of_layers(10)[:-1]
+        places = places[places[:, 0] > 0.25 * SIZE[0]]
+        self.write_frames((0.0, 1.0), [places, places])
+        run = thalweg.Run(self.folder)
+        room = 0.75 * SIZE[0] * SIZE[1] * D
+        profiles = layer_profiles(run, thickness=D)
+        np.testing.assert_allclose(
+            profiles["solid_fraction"][:10] * room / (len(places) / 10 * np.pi / 6 * D**3), 1.0, rtol=1e-3
+        )
+        self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0.1\n")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "analysis.bed_surface"):
+            bed.shields_number(run, 10 * D)
+
+    def test_the_volume_below_a_height_of_a_slope(self):
+        # A wedge whose top rises from 0 to 2 along x, over a plan of 4 by 3.
+        points = np.array([(x, y, z) for y in (0, 3) for x, z in ((0, 0), (4, 0), (4, 2))], float)
+        faces = np.array([(0, 1, 2), (3, 5, 4), (0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (2, 5, 3), (2, 3, 0)])
+        for height in (0.0, 0.5, 1.0, 2.0, 3.0):
+            z = min(height, 2.0)
+            self.assertAlmostEqual(mesh_below(points, faces, height), 3.0 * (4.0 * z - z * z), 2)
 
     def test_spheres_that_are_free_count_one_by_one(self):
         run, post, _ = self.with_a_post(fixed=False)

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPolyDataWriter
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -71,6 +71,20 @@ def write_points(path, places, arrays, adapt=lambda writer: None):
     data.SetPoints(points)
     add_arrays(data.GetPointData(), arrays)
     write(vtkXMLPolyDataWriter(), data, path, adapt)
+
+
+def write_triangles(path, points, triangles, arrays):
+    cells = vtkCellArray()
+    for triangle in triangles:
+        cells.InsertNextCell(3, triangle)
+    places = vtkPoints()
+    places.SetDataTypeToDouble()
+    places.SetData(numpy_to_vtk(np.ascontiguousarray(points, float), deep=True))
+    data = vtkPolyData()
+    data.SetPoints(places)
+    data.SetPolys(cells)
+    add_arrays(data.GetCellData(), arrays)
+    write(vtkXMLPolyDataWriter(), data, path, lambda writer: None)
 
 
 def write_image(path, extent, spacing, arrays, adapt=lambda writer: None):

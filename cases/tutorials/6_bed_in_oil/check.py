@@ -14,6 +14,7 @@ from thalweg.run import runs_of_sweep
 
 THRESHOLD, BAND = 0.12, 0.03   # Charru et al. (2004) 0.12; Ouriemi et al. (2007) 0.12 +- 0.03
 MOVING = 0.12                  # runs at higher Shields numbers enter the fit
+SURFACE = 32                   # grains of a layer of the bed
 
 
 def draw(shields, rate, error, threshold, slope, path):
@@ -37,8 +38,8 @@ def check(checks, folder, figure):
         print("Shields number %.4f: q* = %.5f +- %.5f, %.1f grains move" % row)
     fitted = shields > MOVING
     checks.expect("runs", len(runs), 6, 6)
-    checks.expect("largest number of moving grains below the fit", moving[~fitted].max(), 0.0, 0.9)
-    checks.expect("smallest in it", moving[fitted].min(), 1.0, 150.0)
+    checks.expect("largest number of moving grains below the fit", moving[~fitted].max(), 0.0, 0.2 * SURFACE)
+    checks.expect("number at the largest Shields number", moving[-1], SURFACE, 150.0)
     slope, offset = np.polyfit(shields[fitted], rate[fitted], 1)
     checks.expect("threshold, where a line through the rates ends", -offset / slope, THRESHOLD - BAND, THRESHOLD + BAND)
     checks.compare("threshold", -offset / slope, THRESHOLD, "Charru et al., Ouriemi et al.")

@@ -33,17 +33,18 @@ def surface_of(run, frame, x, y):
 
 
 def depths_of(run):
-    """Times, and how far (m) the deepest eighth of a ring of a diameter round the pier is below the bed away from it,
-    as mean of five frames."""
+    """Times, and how far (m) the bed at the sides of the pier has sunk against the bed away from it since the start, as
+    mean of five frames. Sides: within one and a half grains of the pier, where the flow is fastest, 45 to 135 degrees
+    from its direction."""
     x, y, distance = grid_of(run)
-    ring, away = (distance > RADIUS) & (distance < RADIUS + 5e-3), distance > 2.5 * RADIUS
-    sector = np.floor((np.arctan2(y[:, None] - PIER[1], x[None, :] - PIER[0]) / np.pi + 1.0) * 4.0)
+    along, across = np.abs(x[None, :] - PIER[0]), np.abs(y[:, None] - PIER[1])
+    sides, away = (distance > RADIUS) & (distance < RADIUS + 7.5e-3) & (across > along), distance > 2.5 * RADIUS
     times, depths = [], []
     for frame in run.grains:
         heights = surface_of(run, frame, x, y)
-        deepest = min(heights[ring & (sector == k)].mean() for k in range(8))
         times.append(frame.time)
-        depths.append(heights[away].mean() - deepest)
+        depths.append(heights[away].mean() - heights[sides].mean())
+    depths = np.array(depths) - depths[0]
     return np.array(times), np.convolve(np.pad(depths, 2, mode="edge"), np.full(5, 0.2), mode="valid")
 
 
@@ -76,7 +77,7 @@ def draw(run, depths, flow, path):
     plan.set(xlabel="x [mm], flow to the right", ylabel="y [mm]", title="height of the bed [mm], last 0.4 s")
     figure.colorbar(image, ax=plan, shrink=0.8)
     graph.plot(depths[0], 1e3 * depths[1], color="#14496e")
-    graph.set(xlabel="time [s]", ylabel="depth of the hole [mm]", ylim=(0, 9))
+    graph.set(xlabel="time [s]", ylabel="bed at the sides of the pier, lower by [mm]", ylim=(0, 5))
     graph.yaxis.label.set_color("#14496e")
     speeds = graph.twinx()
     speeds.plot(flow[0], 1e2 * flow[1], "o-", ms=3, lw=0.8, color="#c0392b", label="down the face of the pier")
@@ -90,13 +91,11 @@ def check(checks, folder, figure):
     run = Run(folder)
     checks.finished(run)
     depths, flow = depths_of(run), flow_in_front(run)
-    first, last = depths[0] < 0.1, depths[0] > depths[0][-1] - 0.5
-    moving = flow[0] > 0.5
-    checks.expect("hole at the start", 1e3 * depths[1][first].mean(), 0.0, 5.0, "mm")
-    checks.expect("hole over the last half second", 1e3 * depths[1][last].mean(), 5.0, 11.0, "mm")
+    last, moving = depths[0] > depths[0][-1] - 0.5, flow[0] > 0.5
+    hole = depths[1][last].mean()
+    checks.expect("bed at the sides of the pier, lower than at the start by", 1e3 * hole, 1.0, 4.0, "mm")
     checks.compare(
-        "the same in diameters of the pier", depths[1][last].mean() / (2 * RADIUS), 1.3,
-        "equilibrium after days: Melville and Sutherland",
+        "the same in diameters of the pier", hole / (2 * RADIUS), 1.3, "equilibrium after days: Melville and Sutherland",
     )
     checks.expect("water down the face", 1e2 * flow[1][moving].mean(), 4.0, 12.0, "cm/s")
     checks.expect("water back in front of the foot", 1e2 * flow[2][moving].mean(), 3.0, 15.0, "cm/s")

@@ -134,13 +134,13 @@ TEST(BedSurface, LeavesOutASillOfOverlappingSpheres) {
       }
   for (const Vec3& grain : cubic_lattice(9))
     if (grain.x() < 4.0 * d || grain.x() > 8.0 * d || grain.z() > 6.0 * d) grains.push_back(grain);
-  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0, sill);
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0, {sill});
   surface.observe(spheres.at(0, grains));
   EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 9.0 * d, 0.02 * d);
   EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
   // Where there is nothing else, it is the bed.
   grains.resize(sill.size());
-  BedSurface alone(world, spheres.box(), keys(), d, flume, 0.0, sill);
+  BedSurface alone(world, spheres.box(), keys(), d, flume, 0.0, {sill});
   alone.observe(spheres.at(0, grains));
   EXPECT_NEAR(value_of(alone.results(), "bulk_solid_fraction_mean"), 0.25, 0.03 * 0.25);
   EXPECT_NEAR(value_of(alone.diagnostics(), "bed_height"), 6.0 * d, 0.08 * d);
@@ -186,6 +186,51 @@ TEST(BedSurface, TakesTheStressFromTheForcesOnTheWater) {
     EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), stress, 1e-9);
     EXPECT_NEAR(value_of(surface.results(), "shields_number_mean"), stress / 80.0, 1e-11);
   }
+}
+
+// A pier of solid triangles through the whole depth, an eighth of the plan: the bed fills the room beside it, and what
+// the pier takes of the flow does not reach the bed, nor is the force there where it stands.
+TEST(BedSurface, LeavesOutWhatSolidsFillAndTake) {
+  Spheres spheres(world);
+  const double plan = 16.0 * 8.0 * d * d, depth = 22.0 * d, taken = 0.3 * 300.0 * depth * plan;
+  const FluidSource::Drive drive{Vec3(300.0, 1.0, 2.0), Vec3::Zero(), Vec3(taken, 3.0, 4.0)};
+  const DrivenFluid fluid(drive);
+  std::vector<Vec3> bed = cubic_lattice(10);
+  std::erase_if(bed, [](const Vec3& centre) { return centre.x() < 2.0 * d; });
+  BedObstacles pier;
+  pier.solids_below = [&](int layers) {
+    std::vector<double> below;
+    for (int k = 0; k <= layers; ++k) below.push_back(0.125 * plan * 32.0 * d * k / layers);
+    return below;
+  };
+  BedSurface surface(world, spheres.box(), keys(), d, BedFlow{1, 1e9, 80.0, true}, 0.0, pier);
+  Snapshot snapshot = spheres.at(0, bed);
+  snapshot.fluid = &fluid;
+  surface.observe(snapshot);
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 10.0 * d, 1e-9);
+  EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
+  const double left = 300.0 * 0.875 * depth - taken / plan;
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), left * 8.0 * d / (8.0 * d + depth), 1e-9);
+}
+
+// The same of spheres that are obstacles: an eighth of the grains of a row stands in the flow and takes 0.7 N.
+TEST(BedSurface, LeavesOutWhatOtherObstaclesTake) {
+  Spheres spheres(world);
+  std::vector<Vec3> bed = cubic_lattice(10);
+  const auto post = static_cast<GlobalId>(bed.size());
+  bed.emplace_back(8.0 * d, 4.0 * d, 20.0 * d);
+  const DrivenFluid fluid({Vec3(300.0, 0.0, 0.0), Vec3::Zero()});
+  BedSurface surface(world, spheres.box(), keys(), d, BedFlow{0, 1e9, 80.0, true}, 0.0, {{post}});
+  Snapshot snapshot = spheres.at(0, bed);
+  snapshot.fluid = &fluid;
+  std::vector<Vec3> forces(snapshot.grains.id.size(), Vec3(100.0, 0.0, 0.0));
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    if (snapshot.grains.id[i] == post) forces[i] = Vec3(0.7, 2.0, 3.0);
+  snapshot.grains.fluid_force = forces;
+  surface.observe(snapshot);
+  const double plan = 16.0 * 8.0 * d * d, sphere = std::numbers::pi / 6.0 * d * d * d;
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), 300.0 * (22.0 * d - sphere / plan) - 0.7 / plan,
+              300.0 * 2e-3 * sphere / plan);
 }
 
 // Grains that are still falling may fill the box; the means must outlive that.

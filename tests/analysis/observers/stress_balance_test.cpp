@@ -282,6 +282,33 @@ TEST(StressBalance, BetweenSideWallsCountsWhatTheyTakeOfTheFluid) {
   EXPECT_GT(values.at("side_wall_stress").front(), 0.5 * bed_stress);
 }
 
+// A solid sphere on the floor is a part of the floor that takes its force at the height where it does. A held grain
+// there, which the balance takes for a grain of the bed, leaves the same stress at the floor.
+TEST(StressBalance, CountsWhatSolidsTake) {
+  WaterBox box = viscous_box({18, 18, 30}, 9.0, 1.5);
+  box.gravity = Vec3(0.02, 0.0, -9.8);
+  box.seeds = {glass_sphere(0, Vec3(2.9e-3, 2.7e-3, 2.9e-3))};
+  box.seeds[0].motion = dem::Motion::fixed;
+  box.solids = {bodies::SolidSphere{Vec3(7.1e-3, 6.9e-3, 3.1e-3), 2.4e-3}};
+  const auto system = system_of(box);
+  const double decay = 4.0 * 30.0 * 30.0 / (std::numbers::pi * std::numbers::pi / 3.0);
+  for (int step = 0; step < static_cast<int>(10.0 * decay); ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 1}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double driven = values.at("driving_stress").front();
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    EXPECT_NEAR(values.at("total_stress")[l] + values.at("side_wall_stress")[l], values.at("driving_stress")[l],
+                1e-4 * driven);
+  EXPECT_LT(std::abs(result(balance, "largest_difference")) * result(balance, "bed_stress"), 1e-4 * driven);
+  EXPECT_EQ(values.at("side_wall_stress").back(), 0.0);
+  EXPECT_GT(values.at("side_wall_stress").front(), 0.1 * driven);
+  const double taken =
+      find_diagnostic(system->diagnostics(), "solid_0_force_x").value() / (18.0 * 18.0 * box.spacing * box.spacing);
+  EXPECT_NEAR(values.at("side_wall_stress").front(), taken,
+              0.02 * taken);  // of which the lowest layer has all but a little
+}
+
 // The residue in the balance of a held sphere at a place that scrapes along a wall at 1 mm/s.
 Values of_scraping_sphere(WaterBox box, const Vec3& place) {
   box.closed = true;

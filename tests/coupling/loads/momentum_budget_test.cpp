@@ -21,7 +21,7 @@ TEST(MomentumBudget, HoldsPlanesOfMoreThanEightMillionCells) {
   fluid.exchange_halo();
   SumRange::reset();
   const Units units{1e-3, 1e-4, 1000.0};
-  const MomentumBudget budget = momentum_budget_of(fluid, units, 0.0, std::vector<FixedVec3>(2 * 3 + 1));
+  const MomentumBudget budget = momentum_budget_of(fluid, units, 0.0, bodies::MomentumByHeight(0, 3));
   EXPECT_FALSE(SumRange::was_left());
   for (const PlaneMomentum& sums : budget.planes) {
     EXPECT_EQ(sums.cells, 96 * 96);

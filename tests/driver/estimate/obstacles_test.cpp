@@ -95,6 +95,18 @@ TEST(Obstacles, AreGrainsTwiceAsLongAsTheFreeOnes) {
   }
 }
 
+// A solid sphere, half of it above the floor, leaves less room for the bed; one that moves does not stand there.
+TEST(Obstacles, SolidsTakeTheirRoomInTheBed) {
+  const std::string sphere = "solids: [{sphere: {centre: [0.03, 0.02, 0.0], radius: 0.01}";
+  const Case standing = testing::read_text(bed_with("") + sphere + "}]\n"),
+             moving = testing::read_text(bed_with("") + sphere + ", motion: {velocity: [0.01, 0, 0]}}]\n");
+  constexpr double half = 2.0 / 3.0 * std::numbers::pi * 1000.0, area = 72.0 * 48.0;  // mm^3, mm^2
+  EXPECT_NEAR(settled_height(standing), 0.001 * (11.9996 + half / area), 1e-5);       // of 48 fields round the axis
+  EXPECT_EQ(settled_height(moving), settled_height(testing::read_text(bed_with(""))));
+  EXPECT_NEAR(solids_below(standing)(1).back(), half * 1e-9, 0.01 * half * 1e-9);
+  EXPECT_FALSE(solids_below(moving));
+}
+
 // Through a periodic face, and not through a wall; free grains are never obstacles.
 TEST(Obstacles, OverlapThroughPeriodicFaces) {
   const std::string ends = fixed_at("[0.0005, 0.02, 0.003], [0.0715, 0.02, 0.003]", 0.006);
