@@ -155,6 +155,10 @@ public:
   double volume_radius(std::size_t owned_slot) const {
     return store_.clump[owned_slot] < 0 ? store_.radius[owned_slot] : clumps_.volume_radius(store_.clump[owned_slot]);
   }
+  // m, the diameter, or the width of the clump of a member (Clumps::width()).
+  double width(std::size_t owned_slot) const {
+    return store_.clump[owned_slot] < 0 ? 2.0 * store_.radius[owned_slot] : clumps_.width(store_.clump[owned_slot]);
+  }
   const Clumps& clumps() const { return clumps_; }  // those owned here
   const GrainParameters& parameters() const { return parameters_; }
   const Decomposition& decomposition() const { return decomposition_; }  // the present one, if cuts move

@@ -23,18 +23,23 @@ struct LightLoad {
   double fluid_density;  // kg/m^3
   double spacing;        // m
 
-  // m_C of a grain with the volume of this sphere, kg; m. With 4.2 dx/d a sphere of a tenth of the fluid's density
-  // broke down at tau = 1.
-  double added_mass(double radius) const {
-    return 5.0 * spacing / (2.0 * radius) * fluid_density * Sphere{radius}.volume();
+  // A sphere, or a clump: its mass (kg), the radius of its volume (m), and its width (m), the diameter or the shortest
+  // axis of a clump. A rod turns about its long axis as its spheres do, whose resistance goes with dx over their
+  // diameter.
+  struct Grain {
+    double mass, volume_radius, width;
+  };
+
+  // m_C, kg. With 4.2 dx/d a sphere of a tenth of the fluid's density broke down at tau = 1.
+  double added_mass(const Grain& grain) const {
+    return 5.0 * spacing / grain.width * fluid_density * Sphere{grain.volume_radius}.volume();
   }
 
   // True if a grain needs the filter: without it, the lightest stable grain had 7.2 dx/d of the displaced mass
   // (docs/theory.md, section 3, "Light grains").
-  bool concerns(double mass, double radius) const { return mass < 1.6 * added_mass(radius); }
+  bool concerns(const Grain& grain) const { return grain.mass < 1.6 * added_mass(grain); }
 
-  // s; kg, m.
-  double share(double mass, double radius) const { return mass / (mass + added_mass(radius)); }
+  double share(const Grain& grain) const { return grain.mass / (grain.mass + added_mass(grain)); }  // s
 
   // A(n) from A(n-1) and L(n).
   static Vec3 filtered(const Vec3& before, const Vec3& load, double share) { return before + share * (load - before); }

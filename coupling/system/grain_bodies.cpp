@@ -242,16 +242,16 @@ template <typename Real>
 void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec3& torque) {
   dem::GrainStore& store = grains_.store();
   const GrainExchange<const double> kept = std::as_const(*this).exchange_of(grain);
-  const double mass = store.mass[grain], radius = grains_.volume_radius(grain);
+  const LightLoad::Grain body{store.mass[grain], grains_.volume_radius(grain), grains_.width(grain)};
   const dem::Motion motion = store.motion[grain];
-  const bool is_light = light_load_.concerns(mass, radius), turns = !dem::holds_rotation(motion);
+  const bool is_light = light_load_.concerns(body), turns = !dem::holds_rotation(motion);
   const bool force_moves = !dem::holds_translation(motion) || (dem::is_member(motion) && turns);
-  const double share = light_load_.share(mass, radius);
+  const double share = light_load_.share(body);
   if (is_light && force_moves) {
-    const Vec3 body = grains_.body_force(grain);
-    const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + body);
+    const Vec3 weight = grains_.body_force(grain);
+    const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + weight);
     const Vec3 mean = averaged_load(LoadAveraging::mean, force, kept.last_force(), kept.earlier_force());
-    store.load_force[grain] = LightLoad::filtered(before, mean + body, share) - body;
+    store.load_force[grain] = LightLoad::filtered(before, mean + weight, share) - weight;
   } else {
     store.load_force[grain] = averaged_load(load_, force, kept.last_force(), kept.earlier_force());
   }

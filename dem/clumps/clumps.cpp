@@ -127,10 +127,18 @@ void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
   }
 }
 
-double Clumps::volume_radius(GlobalId id) const {
-  const auto clump = std::lower_bound(clumps_.begin(), clumps_.end(), id,
-                                      [](const Clump& c, GlobalId wanted) { return c.id < wanted; });
-  return radius_of(*clump);
+const Clump& Clumps::with_id(GlobalId id) const {
+  return *std::lower_bound(clumps_.begin(), clumps_.end(), id,
+                           [](const Clump& c, GlobalId wanted) { return c.id < wanted; });
+}
+
+double Clumps::volume_radius(GlobalId id) const { return radius_of(with_id(id)); }
+
+double Clumps::width(GlobalId id) const {
+  constexpr double least = 0.2;
+  const Clump& clump = with_id(id);
+  const double square = 10.0 * (clump.moments.sum() - 2.0 * clump.moments.maxCoeff()) / clump.mass;
+  return std::max(std::sqrt(std::max(0.0, square)), least * 2.0 * radius_of(clump));
 }
 
 void Clumps::wrap(const PeriodicBox& box) {

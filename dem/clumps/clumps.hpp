@@ -74,6 +74,9 @@ public:
   void share_body_force(std::vector<Vec3>& of_slot) const;
 
   double volume_radius(GlobalId clump) const;  // m, of the sphere (disk) of the volume of a clump owned here
+  // m, shortest axis of the ellipsoid of the mass and the moments of a clump owned here; at least a fifth of the
+  // diameter of its volume, which a plate that is given by its moments could fall below.
+  double width(GlobalId clump) const;
   double radius_of(const Clump& clump) const;  // the same
   std::size_t member_count(std::size_t n) const { return count(n); }
 
@@ -104,6 +107,7 @@ public:
   double largest_pull(const GrainStore& store) const;
 
 private:
+  const Clump& with_id(GlobalId id) const;  // owned here
   Vec3 arm(std::size_t n, std::size_t member) const { return arms_[first_arm_[n] + member]; }
   std::size_t count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
   void turn_arms(std::size_t n);

@@ -173,7 +173,7 @@ TEST(LightGrains, AClumpWhosePlaceIsHeldTurnsAsAFreeOne) {
   const Vec3 free = spin_left(dem::Motion::free), held = spin_left(dem::Motion::held_translation);
   EXPECT_GT(free.norm(), 0.5);
   EXPECT_LT(free.norm(), 10.0);
-  EXPECT_LT((held - free).norm(), 0.01 * free.norm());  // the staircase of the cells moves the free one a little
+  EXPECT_LT((held - free).norm(), 0.02 * free.norm());  // the staircase of the cells moves the free one a little
 }
 
 // A second member inside the first adds nothing to a sphere, and does not make it turn when it is let go.
@@ -203,6 +203,44 @@ TEST(LightGrains, AClumpThatIsASphereRisesAsOne) {
       ASSERT_LT((clump[n] - alone[n]).norm(), 1e-3 * speed) << "step " << n / 2;
       ASSERT_LT((clump[n + 1] - alone[n + 1]).norm() * radius, 1e-3 * speed) << "step " << n / 2;
     }
+  }
+}
+
+// Rods of spheres of six cells turn about their long axis as their spheres do. Nothing moves them but a small spin,
+// which must go: unfiltered, as a sphere of their volume would be, it changed its sign from step to step and grew.
+TEST(LightGrains, RodsLoseTheirSpinAtAnyDensity) {
+  struct Rod {
+    int spheres;
+    double density;
+    bodies::LinkRule rule;
+  };
+  for (const Rod& rod : {Rod{5, 1000.0, bodies::LinkRule::cli},
+                         {5, 850.0, bodies::LinkRule::cli},
+                         {5, 1100.0, bodies::LinkRule::cli},
+                         {2, 1100.0, bodies::LinkRule::cli},
+                         {5, 300.0, bodies::LinkRule::cli},
+                         {9, 700.0, bodies::LinkRule::bouzidi}}) {
+    WaterBox box;
+    box.cells = {6 * rod.spheres + 10, 20, 20};
+    box.periodic = {true, false, false};
+    box.closed = true;
+    box.spacing = 1e-4;
+    box.viscosity = 1e-5;
+    box.time_step = 0.03 / 3.0 * 1e-8 / box.viscosity;
+    box.smagorinsky_constant = 0.0;
+    box.collision = lbm::CollisionModel::trt;
+    box.links.rule = rod.rule;
+    box.normal_stiffness = 1.0;
+    std::vector<dem::PlacedSphere> members;
+    for (int n = 0; n < rod.spheres; ++n)
+      members.push_back({Vec3((6.0 * n - 3.0 * (rod.spheres - 1)) * 1e-4, 0, 0), 3e-4});
+    const Vec3 middle(0.5 * box.cells[0] * 1e-4 + 1.3e-5, 1e-3, 1e-3);
+    const double spin = 1e-3 / box.time_step;
+    box.clumps = {glass_clump(0, members, middle, Vec3::Zero(), Vec3(spin, 0.0, 0.0))};
+    box.clumps[0].density = rod.density;
+    const auto system = make_system<double>(box, MPI_COMM_SELF, {1, 1, 1});
+    for (int n = 0; n < 700; ++n) system->advance();
+    EXPECT_LT(system->grains().clumps()[0].angular_velocity.norm(), 0.2 * spin) << rod.spheres << ", " << rod.density;
   }
 }
 

@@ -52,9 +52,13 @@ constexpr LightLoad water{1000.0, 5e-4};  // kg/m^3, m
 
 TEST(LightLoad, ConcernsGrainsBelowEightCellsOverTheDiameterOfTheFluidsDensity) {
   const double radius = 2.5e-3, displaced = 1000.0 * Sphere{radius}.volume();  // ten cells
-  EXPECT_TRUE(water.concerns(0.79 * displaced, radius));
-  EXPECT_FALSE(water.concerns(0.81 * displaced, radius));
-  EXPECT_NEAR(water.share(0.5 * displaced, radius), 0.5, 1e-12);  // m_C is half of the displaced mass here
+  EXPECT_TRUE(water.concerns({0.79 * displaced, radius, 2.0 * radius}));
+  EXPECT_FALSE(water.concerns({0.81 * displaced, radius, 2.0 * radius}));
+  EXPECT_NEAR(water.share({0.5 * displaced, radius, 2.0 * radius}), 0.5, 1e-12);  // m_C is half of the displaced mass
+  // A clump of this volume that is half as wide.
+  EXPECT_TRUE(water.concerns({1.59 * displaced, radius, radius}));
+  EXPECT_FALSE(water.concerns({1.61 * displaced, radius, radius}));
+  EXPECT_NEAR(water.share({displaced, radius, radius}), 0.5, 1e-12);
 }
 
 TEST(LightLoad, PassesImpulsesInFullAndSteadyLoadsUnchanged) {
