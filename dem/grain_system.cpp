@@ -90,7 +90,7 @@ Snapshot GrainSystem::snapshot() const {
 
 std::vector<Diagnostic> GrainSystem::diagnostics() const {
   std::vector<Diagnostic> diagnostics{{"contacts", "1", static_cast<double>(grains_.contact_count())},
-                                      {"largest_overlap", "1", grains_.largest_overlap()},
+                                      {"largest_overlap", "diameter", grains_.largest_overlap()},
                                       {largest_speed_diagnostic, "m/s", grains_.largest_free_speed()},
                                       {largest_acceleration_diagnostic, "m/s^2", grains_.largest_acceleration()}};
   if (rest_)

@@ -68,6 +68,9 @@ Decomposition::Decomposition(const Index3& cells, double spacing, const std::arr
                              const Index3& layout, const Index3& least)
     : cells_(cells), spacing_(spacing), periodic_(periodic), layout_(layout), least_(least) {
   for (int a = 0; a < 3; ++a) CHECK(least[a] >= min_cells_per_rank);
+  if (!(spacing > 0.0) || *std::min_element(cells.begin(), cells.end()) < 1)
+    throw InputError(fmt::format("A box of {} x {} x {} cells of {} m has no volume; give at least one cell an axis.",
+                                 cells[0], cells[1], cells[2], spacing));
   if (!fits(cells, layout, least))
     throw InputError(fmt::format(
         "Layout {},{},{} of {} x {} x {} cells leaves some rank too few along a cut axis: it needs {} along "

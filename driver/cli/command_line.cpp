@@ -112,7 +112,8 @@ void add_others(CLI::App& app, Command& command) {
   check->add_option("--until", command.until, "Simulated time at which the run is to end, in s, instead of run.until");
   check->add_flag("--solve", command.solve,
                   "Print the keys to change so that no warning is left but those that ask for your choice");
-  check->add_flag("--json", command.json, "Print the figures of the report, its lines and its warnings as JSON");
+  check->add_flag("--json", command.json, "Print the figures of the report, its lines and its warnings as JSON")
+      ->excludes("--solve");
   check->add_option("--latency", command.network.latency, "Network latency, s")
       ->check(positive_number())
       ->capture_default_str();

@@ -55,13 +55,27 @@ void add_summary(const YAML::Node& summary, Table& table) {
 
 }  // namespace
 
-std::vector<std::string> info_table(const std::vector<std::string>& runs) {
+// The run folders that a path of the command line stands for: itself, or the runs of a sweep. Files beside other paths,
+// as a sweep has them beside its runs, stand for none.
+static std::vector<std::string> runs_of(const std::string& path, bool alone) {
+  const std::filesystem::path folder(path), of_sweep = folder / "runs";
+  std::error_code ignored;
+  if (!alone && std::filesystem::is_regular_file(folder, ignored)) return {};
+  if (io::RunFolder(folder).is_run_folder() || !std::filesystem::is_directory(of_sweep, ignored)) return {path};
+  std::vector<std::string> runs;
+  for (const auto& entry : std::filesystem::directory_iterator(of_sweep, ignored))
+    if (io::RunFolder(entry.path()).is_run_folder()) runs.push_back(entry.path().string());
+  std::sort(runs.begin(), runs.end());
+  return runs;
+}
+
+std::vector<std::string> info_table(const std::vector<std::string>& paths) {
+  std::vector<std::string> runs;
+  for (const std::string& path : paths)
+    for (const std::string& run : runs_of(path, paths.size() == 1)) runs.push_back(run);
   Table table;
   for (const std::string& run : runs) {
     const io::RunFolder folder(run);
-    std::error_code ignored;
-    if (runs.size() > 1 && std::filesystem::is_regular_file(run, ignored))
-      continue;  // of a sweep, say, beside its runs
     require_run_folder(folder);
     table.rows.emplace_back();
     table.set("run", run);

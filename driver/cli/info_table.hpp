@@ -6,7 +6,7 @@
 
 namespace thalweg::driver {
 
-// A heading and one row a run folder, as comma-separated values: `run` (as given), `state` (finished; the reason why
+// A heading and one row a run folder, or one for each run of a sweep's folder, as comma-separated values: `run` (as given), `state` (finished; the reason why
 // not; or state_without_summary where there is no summary yet), then every number and text of summary.json, those of
 // its groups as group.name [unit], without the times of phases and the provenance. Columns come in the order in which
 // the runs have them; what a run lacks is empty. Throws InputError for a path that is no run folder, and for a damaged

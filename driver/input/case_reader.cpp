@@ -33,6 +33,7 @@ Case example_column(Case c) {
   c.gravity.slope = 0.016;
   c.run.until = 120.0;
   c.run.time_step = column_time_step;
+  c.output.series.every = column_time_step;
   c.continuum.fluid = {1000.0, 1e-6};
   c.continuum.grains = {5e-3, 2550.0};
   c.continuum.column.shields_number = 0.085;
@@ -78,9 +79,10 @@ Case example_case(SystemKind system) {
   return c;
 }
 
-// Derives the box that the parts common to all systems need.
-void fill_in_column(Case& c) {
+// Derives step, rows and the box that the parts common to all systems need.
+void fill_in_column(Case& c, const io::YamlDocument& document) {
   if (!c.run.time_step) c.run.time_step = column_time_step;
+  if (!document.find("output.series.every")) c.output.series.every = *c.run.time_step;
   const continuum::ColumnParameters column = column_of(c).column;
   c.domain.spacing = column.spacing;
   c.domain.size = {column.spacing, column.spacing, column.cells * column.spacing};
@@ -109,7 +111,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   c.flow.reset();
   if (c.system == SystemKind::continuum) {
     check_column(c, document);
-    fill_in_column(c);
+    fill_in_column(c, document);
   }
   fill_in_grains(c, document, known, ranks);
   if (has_fluid(c)) c.fluid.fill_in_models();

@@ -32,6 +32,19 @@ const CollisionParameters& checked(const CollisionParameters& parameters) {
   return parameters;
 }
 
+const Decomposition& checked(const Decomposition& decomposition, MPI_Comm communicator, const FaceConditions& faces) {
+  if (decomposition.ranks() != size_of(communicator))
+    throw InputError(fmt::format("The decomposition is one for {} ranks, and there are {}; make one for them.",
+                                 decomposition.ranks(), size_of(communicator)));
+  for (int face = 0; face < 6; ++face) {
+    const bool periodic = faces[static_cast<std::size_t>(face)].type == FaceType::periodic;
+    if (periodic != decomposition.periodic()[static_cast<std::size_t>(face / 2)])
+      throw InputError(fmt::format("Face {} is {}periodic, and its axis in the decomposition is {}; make them agree.",
+                                   face, periodic ? "" : "not ", periodic ? "not" : "periodic"));
+  }
+  return decomposition;
+}
+
 // Walls around this block's cells.
 WallPositions wall_positions(const Decomposition& decomposition, const Block& block, const FaceConditions& faces) {
   WallPositions walls;
@@ -51,7 +64,7 @@ WallPositions wall_positions(const Decomposition& decomposition, const Block& bl
 template <typename Real>
 Fluid<Real>::Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
                    const FaceConditions& faces)
-    : decomposition_(decomposition),
+    : decomposition_(checked(decomposition, communicator, faces)),
       communicator_(communicator),
       parameters_(checked(parameters)),
       block_(decomposition.block_of(rank_of(communicator))),

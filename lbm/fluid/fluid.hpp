@@ -38,7 +38,9 @@ struct FluidTotals {
 template <typename Real>
 class Fluid {
 public:
-  // The decomposition must outlive the fluid. Throws InputError if a relaxation time is not above 1/2.
+  // The decomposition must outlive the fluid. Throws InputError if a relaxation time is not above 1/2, if the
+  // decomposition is not one for as many ranks as the communicator has, or if the faces of an axis are not as periodic
+  // as it is.
   Fluid(const Decomposition& decomposition, MPI_Comm communicator, const CollisionParameters& parameters,
         const FaceConditions& faces);
 

@@ -17,6 +17,8 @@
 namespace thalweg::bodies::link_builder_test {
 namespace {
 
+const lbm::FaceConditions between_plates{{{}, {}, {}, {}, {lbm::FaceType::no_slip}, {lbm::FaceType::no_slip}}};
+
 // Every link there must be by the map of the cells, and no other, in the words of the table.
 std::set<std::array<std::uint32_t, 4>> links_by_definition(const lbm::Fluid<double>& fluid) {
   std::set<std::array<std::uint32_t, 4>> links;  // body, tile, place, tag
@@ -84,7 +86,7 @@ std::map<std::pair<std::int32_t, std::int32_t>, Vec3> patches_by_definition(cons
 TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
   const Index3 cells{21, 18, 17};
   const Decomposition decomposition(cells, 1.0, {true, true, false}, {1, 1, 1});
-  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, {});
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, between_plates);
   BodyMap map(decomposition, fluid.block(), fluid.cells());
   LinkTable table(fluid.tiles().count());
   LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());
@@ -132,7 +134,7 @@ TEST(LinkBuilder, FollowsTheMapThroughAnyMoves) {
 TEST(LinkBuilder, KnowsWhichCellsAreEnclosed) {
   const Index3 middle{9, 0, 4};
   const Decomposition decomposition({18, 9, 9}, 1.0, {true, true, false}, {1, 1, 1});
-  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, {});
+  lbm::Fluid<double> fluid(decomposition, MPI_COMM_SELF, {}, between_plates);
   BodyMap map(decomposition, fluid.block(), fluid.cells());
   LinkTable table(fluid.tiles().count());
   LinkBuilder builder(decomposition, fluid.block(), fluid.cells(), fluid.tiles());

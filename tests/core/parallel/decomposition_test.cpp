@@ -46,6 +46,8 @@ TEST(Decomposition, LeavesARankTheCellsItNeeds) {
 TEST(Decomposition, RefusesMoreRanksThanCellsAllow) {
   EXPECT_THROW(Decomposition::best_layout({6, 6, 6}, 64), InputError);
   EXPECT_THROW(Decomposition({6, 6, 6}, 1.0, {true, true, true}, {2, 1, 1}), InputError);
+  EXPECT_THROW(Decomposition({-1, 8, 8}, 1.0, {true, true, true}, {1, 1, 1}), InputError);
+  EXPECT_THROW(Decomposition({8, 8, 8}, 0.0, {true, true, true}, {1, 1, 1}), InputError);
 }
 
 TEST(Decomposition, WrapsRanksOnPeriodicAxesOnly) {

@@ -82,8 +82,13 @@ class Info(ProgramTest):
         self.assertFalse(any(name.startswith(("phases", "units")) for name in header))
         (self.folder / "notes.txt").write_text("not a run\n")
         self.assertEqual(self.run_well("info", "--csv", "a", "notes.txt").stdout.count("\n"), 2)
+        (self.folder / "sweep/runs").mkdir(parents=True)
+        for name in "ba":
+            (self.folder / name).rename(self.folder / "sweep/runs" / name)
+        _, *rows = csv.reader(self.run_well("info", "--csv", "c", "sweep").stdout.splitlines())
+        self.assertEqual([row[0] for row in rows], ["c", "sweep/runs/a", "sweep/runs/b"])
         self.assert_refused("info", "a", "b", words=["--csv"])
-        self.assert_refused("info", "--csv", "a", "nowhere", words=["nowhere"])
+        self.assert_refused("info", "--csv", "c", "nowhere", words=["nowhere"])
 
 
 if __name__ == "__main__":

@@ -14,11 +14,13 @@ namespace {
 // Periodic along x and y, walls across z: where a fraction s of the box is reached.
 using Flow = FluidState (*)(const Vec3& s);
 
+const FaceConditions between_plates{{{}, {}, {}, {}, {FaceType::no_slip}, {FaceType::no_slip}}};
+
 class Lattice {
 public:
   explicit Lattice(const Index3& cells)
       : decomposition_(cells, 1.0, {true, true, false}, Decomposition::best_layout(cells, size_of(MPI_COMM_WORLD))),
-        fluid_(decomposition_, MPI_COMM_WORLD, {}, {}) {}
+        fluid_(decomposition_, MPI_COMM_WORLD, {}, between_plates) {}
 
   Fluid<double>& fluid() { return fluid_; }
 
@@ -128,7 +130,7 @@ TEST(FlowTransfer, IsTheSameOnEveryNumberOfRanks) {
   test::MemoryReader reader(archive);
   transfer_flow(target.fluid(), reader, 0.7);
   const Decomposition whole({30, 26, 35}, 1.0, {true, true, false}, {1, 1, 1});
-  Fluid<double> alone(whole, MPI_COMM_SELF, {}, {});
+  Fluid<double> alone(whole, MPI_COMM_SELF, {}, between_plates);
   test::MemoryReader again(archive);
   transfer_flow(alone, again, 0.7);
   const test::MemoryArchive of_one = test::saved(alone, MPI_COMM_SELF);

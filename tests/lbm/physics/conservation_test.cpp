@@ -1,4 +1,5 @@
 // Closed boxes keep their mass to round-off, whatever walls close them.
+#include "core/base/error.hpp"
 #include "lbm/fluid/fluid.hpp"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,14 @@ INSTANTIATE_TEST_SUITE_P(Walls, ClosedBox,
                          ::testing::Values(FaceType::no_slip, FaceType::free_slip, FaceType::moving,
                                            FaceType::navier_slip, FaceType::law_of_the_wall,
                                            FaceType::slip_law_of_the_wall));
+
+// A face that is left periodic on a closed axis would act as a wall.
+TEST(Fluid, RefusesFacesAndRanksThatDoNotFitTheDecomposition) {
+  const Decomposition closed({8, 8, 8}, 1.0, {true, true, false}, {1, 1, 1}),
+      of_two({8, 8, 8}, 1.0, {true, true, true}, {2, 1, 1});
+  EXPECT_THROW(Fluid<double>(closed, MPI_COMM_SELF, {}, {}), InputError);
+  EXPECT_THROW(Fluid<double>(of_two, MPI_COMM_SELF, {}, {}), InputError);
+}
 
 }  // namespace
 }  // namespace thalweg::lbm::conservation_test
