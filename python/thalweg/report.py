@@ -15,7 +15,7 @@ from thalweg import bed, sizes, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import mean_with_error
-from thalweg.transport import column_of, transport
+from thalweg.transport import column_of, sentence_of_column, state_of_column, transport
 from thalweg.visible_profiles import visible_profiles
 
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
@@ -203,13 +203,10 @@ def describe_camera(report):
 
 
 def describe_column(report):
-    """A column of two continua changes until it is steady: what counts is its state at the end of the time wanted."""
-    series = report.run.series
-    row = int(np.flatnonzero(series["time"] <= report.stop + 1e-9)[-1])
-    state = {name: float(series[name][row]) for name in series}
+    """Of a column of two continua, its state at the end of the time wanted."""
+    state = state_of_column(report.run, report.stop)
     report.numbers = {"from": state["time"], "until": state["time"], "continuum": state}
-    unsteadiness = f"unsteadiness {state['unsteadiness']:.2g}"
-    report.say("transport", f"q* = {state['q_star']:.4g} at {state['time']:g} s, {unsteadiness}")
+    report.say("transport", sentence_of_column(state))
     report.say("surface", f"at {state['surface_height']:.4g} m, {1e3 * state['moving_depth']:.3g} mm of grains in "
                f"motion: Shields number {state['shields_number']:.4g}")
 

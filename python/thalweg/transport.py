@@ -70,6 +70,19 @@ def of_run(run):
     return (run.summary or {}).get("transport_rate") or {}
 
 
+def state_of_column(run, stop=np.inf):
+    """The last row of series.csv up to a time (s), as numbers by name: a column of two continua changes until it is
+    steady, so what counts is its state at the end and no mean."""
+    series = run.series
+    row = int(np.flatnonzero(series["time"] <= stop + 1e-9)[-1])
+    return {name: float(series[name][row]) for name in series}
+
+
+def sentence_of_column(state):
+    """q* of a state of a column, when it was, and how far from steady."""
+    return f"q* = {state['q_star']:.4g} at {state['time']:g} s, unsteadiness {state['unsteadiness']:.2g}"
+
+
 def by_the_run(run, column):
     found = of_run(run)
 

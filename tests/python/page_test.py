@@ -176,7 +176,13 @@ class Report(unittest.TestCase):
                 file[f"continuum/{name}"] = np.linspace(0.0, 1.0, 5)
             for name in ("grain_velocity", "fluid_velocity"):
                 file[f"continuum/{name}"] = np.ones((5, 3))
+        (self.folder / "series.csv").write_text(
+            "time [s],q_star [1],unsteadiness [1]\n0,0,1\n5,0.06,1\n10,0.08,1e-5\n"
+        )
         page = self.page()
+        self.assertIn("q* = 0.08 at 10 s, unsteadiness 1e-05.", page.text)
+        self.assertNotIn("steady or not", page.text)
+        self.assertNotIn("standard error", page.text)
         self.assertNotIn("Picture", page.sections)
         self.assertIn("Profiles", page.sections)
 

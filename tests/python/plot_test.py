@@ -221,6 +221,14 @@ class Plot(unittest.TestCase):
                 low, high = axes[1].get_ylim()
                 self.assertTrue(low <= rate[100:].min() and rate[100:].max() < high < 0.2)
 
+    def test_of_a_continuum_the_last_rate_counts(self):
+        (self.folder / "case.yaml").write_text("name: column\nsystem: continuum\n")
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n5,0.06\n10,0.08\n")
+        figure = transport_rate.figure_of(thalweg.Run(self.folder))
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()],
+                         ["column", "at 10 s: 0.08"])
+
     def test_axes_of_nothing(self):
         self.assertEqual(transport_rate.padded(np.zeros(3)), (0.0, 0.05))
 

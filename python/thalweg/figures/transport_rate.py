@@ -1,5 +1,5 @@
 """The transport rate against time: every measurement, the averaging window, and the mean with its error that run.log
-has."""
+has; of a continuum its last value instead."""
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -12,7 +12,10 @@ LEAST_SHARE = 0.35   # of the axis that the rates in the averaging window fill; 
 
 
 def mean_transport(run):
-    """The mean that run.log has, or None before the first measurement that counts."""
+    """The mean that run.log has, or None before the first measurement that counts, and for a continuum, which has
+    none."""
+    if run.system == "continuum":
+        return None
     try:
         return transport.transport(run)
     except RunFolderError:
@@ -40,6 +43,14 @@ def draw_rates(axes, time, rate, found):
     axes.spines[["top", "right"]].set_visible(False)
 
 
+def draw_column(axes, time, rate):
+    """The rate of a column of two continua, and its last value."""
+    axes.plot(time, rate, color=SMOOTH_COLOUR, linewidth=1.6, zorder=3, label="column")
+    axes.plot(time[-1], rate[-1], "o", color=MEAN_COLOUR, clip_on=False, zorder=5,
+              label=f"at {time[-1]:.4g} s: {rate[-1]:.4g}")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
 def padded(values):
     """Axis limits that show all of the values, and nought."""
     low, high = min(0.0, float(np.min(values))), max(0.0, float(np.max(values)))
@@ -49,7 +60,8 @@ def padded(values):
 
 def figure_of(run):
     """All measured q* against time with their running mean, and the mean with its error that run.log has over its time;
-    where a start carries so much that this hardly shows, once more below, enlarged."""
+    where a start carries so much that this hardly shows, once more below, enlarged. Of a continuum q* and its last
+    value."""
     series = run.series
     name, label = "q_star", r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
     if name not in series:
@@ -67,7 +79,10 @@ def figure_of(run):
     figure, panels = plt.subplots(2 if enlarged else 1, 1, figsize=(6.4, 5.4 if enlarged else 3.6), squeeze=False,
                                   constrained_layout=True)
     for axes, shown in zip(panels[:, 0], (rate, inside)):
-        draw_rates(axes, time, rate, found)
+        if run.system == "continuum":
+            draw_column(axes, time, rate)
+        else:
+            draw_rates(axes, time, rate, found)
         axes.set(ylabel=label, ylim=padded(shown))
     end = time[-1] if time[-1] > time[0] else time[0] + 1.0
     panels[0, 0].set(xlim=(time[0], end))

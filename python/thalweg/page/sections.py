@@ -12,7 +12,7 @@ from thalweg.page.figures import column_figure, series_figure
 from thalweg.history import command_of, sessions_of, settings_in, warnings_of
 from thalweg.sizes import Sizes
 from thalweg.sizes import measured as measured_by_size
-from thalweg.transport import transport
+from thalweg.transport import sentence_of_column, state_of_column, transport
 
 SYSTEMS = {
     "resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains",
@@ -105,6 +105,15 @@ def pictures(run):
     return html.section("Picture", attempt(draw, caption))
 
 
+def caption_of_rates(run):
+    """What is drawn against time, q* or without a fluid q_s."""
+    volume = "the volume of grains that passes per unit width and time"
+    symbol = f"q* is {volume} over sqrt((s - 1) g d^3)" if "q_star" in run.series else f"q_s is {volume}"
+    if run.system == "continuum":
+        return f"Transport rate against time. {symbol}; the point: the state at the end."
+    return f"Transport rate against time. {symbol}; shaded: the time of the mean, with a band of one standard error."
+
+
 def transport_section(run):
     try:
         series = run.series
@@ -112,15 +121,9 @@ def transport_section(run):
         return ""
     if not {"q_star", "q_s"} & set(series):
         return ""
-    parts = [
-        attempt(
-            lambda: transport_rate.figure_of(run),
-            (
-                "Transport rate against time. q* is the volume of grains that passes per unit width and time over"
-                " sqrt((s - 1) g d^3); shaded: the time of the mean, with a band of one standard error."
-            ),
-        )
-    ]
+    parts = [attempt(lambda: transport_rate.figure_of(run), caption_of_rates(run))]
+    if run.system == "continuum":
+        return html.section("Transport", *parts, html.paragraph(sentence_of_column(state_of_column(run)) + "."))
     try:
         parts += [
             html.paragraph(sentence[:1].upper() + sentence[1:] + ".")
