@@ -108,10 +108,17 @@ def side_view_axes(size):
 
 
 def flow_direction(run):
-    """Text after the label of the x axis: where the flow goes, if it is driven along x."""
-    faces = {face for axis in "xyz" for face in run.faces(axis)}
-    driven = "gravity" not in run.case or run.gravity[0] > 0.0 or faces & {"moving", "velocity_inlet"}
-    return ", flow to the right" if driven or (run.case.get("fluid") or {}).get("mean_velocity") else ""
+    """Text after the label of the x axis: which way the fluid goes along x; none without a fluid, without anything that
+    drives it along x, or where walls and gravity drive it in opposite directions."""
+    fluid = run.case.get("fluid")
+    if not fluid:
+        return ""
+    if fluid.get("mean_velocity"):   # in place of gravity along x
+        drives = {np.sign(float(fluid["mean_velocity"]["velocity"]))}
+    else:
+        speeds = [velocity[0] for velocity in run.velocities_of_faces()]
+        drives = set(np.sign([run.gravity[0], *speeds])) - {0.0}
+    return {(1.0,): ", flow to the right", (-1.0,): ", flow to the left"}.get(tuple(drives), "")
 
 
 def draw_outlines(axes, position, radius, linewidth):

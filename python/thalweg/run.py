@@ -203,6 +203,11 @@ class Run:
         names = ("bottom", "top") if axis == "z" else (f"{axis}_low", f"{axis}_high")
         return tuple(face_type(boundaries.get(name)) or both for name in names)
 
+    def velocities_of_faces(self):
+        """Velocities (m/s, along x, y, z) of the walls that move and of the fluid at inlets."""
+        boundaries = self.section("domain").get("boundaries", {}).values()
+        return [np.array(face["velocity"], float) for face in boundaries if isinstance(face, dict) and "velocity" in face]
+
     @property
     def periodic(self):
         """Whether x, y and z are periodic."""

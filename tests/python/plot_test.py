@@ -181,14 +181,19 @@ class Plot(unittest.TestCase):
         layer.mask[:] = True
         self.assertEqual(drawing.without_holes(layer).shape, (5, 5))
 
-    def test_only_a_driven_flow_goes_to_the_right(self):
-        case, words = self.folder / "case.yaml", ", flow to the right"
-        self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), words)
+    def test_which_way_the_flow_goes(self):
+        case, right, left = self.folder / "case.yaml", ", flow to the right", ", flow to the left"
         text = case.read_text()
-        for gravity, sides, expected in (("{magnitude: 9.8, slope: 0.1}", "law_of_the_wall", words),
-                                         ("{vector: [0, 0, -9.8]}", "law_of_the_wall", ""),
-                                         ("{vector: [0, 0, -9.8]}", "moving", words)):
-            case.write_text(text.replace("law_of_the_wall", sides) + f"gravity: {gravity}\n")
+        down, water, wall = "{vector: [0, 0, -9.8]}", "{density: 1000}", "{{type: moving, velocity: [{}, 0, 0]}}".format
+        held = "{{density: 1000, mean_velocity: {{velocity: {}, response_time: 0.1}}}}".format
+        for gravity, sides, fluid, expected in (
+            ("{magnitude: 9.8, slope: 0.1}", "law_of_the_wall", water, right),
+            ("{vector: [-0.1, 0, -9.8]}", "law_of_the_wall", water, left), (down, "law_of_the_wall", water, ""),
+            (down, wall(0.1), water, right), (down, wall(-0.1), water, left), (down, wall(0), water, ""),
+            ("{vector: [0.1, 0, -9.8]}", wall(-0.1), water, ""), (down, "law_of_the_wall", held(-0.3), left),
+            ("{vector: [-0.1, 0, -9.8]}", "law_of_the_wall", held(0.3), right), (down, wall(0.1), "{}", ""),
+        ):
+            case.write_text(text.replace("{type: law_of_the_wall}", sides) + f"gravity: {gravity}\nfluid: {fluid}\n")
             self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), expected)
 
     def rate_panels(self, early):
