@@ -1,4 +1,6 @@
 """The side view: lit grains in front of the water, as thalweg plot draws it, alone and in films."""
+import textwrap
+
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
@@ -6,12 +8,16 @@ from matplotlib import colors
 from matplotlib.collections import EllipseCollection
 
 from thalweg.errors import RunFolderError
+from thalweg.units import units_of
 
 GRAIN_COLOURS = matplotlib.colormaps["YlOrRd"]
 FLUID_COLOURS = colors.LinearSegmentedColormap.from_list("water", ["#f4f8fb", "#a9cfe3", "#4a93bd", "#14496e"])
 WATER = -1   # as grain_id; solids have lower ones
 SOLID_COLOUR = "#8d8d8d"
 PIXELS_PER_DIAMETER = 48
+TITLE_SIZE = 11   # points
+SOLID_PIXELS = 800   # along the longer side of the box, of the cut of solids
+LINE, LETTER = 1.3 * TITLE_SIZE / 72.0, 0.6 * TITLE_SIZE / 72.0   # inches: height of a line, width of a letter
 
 
 def colour_of(number):
@@ -93,23 +99,37 @@ def render_spheres(position, radius, speed, extent, scale, norm):
     return np.dstack([rgb, alpha])
 
 
-def side_view_axes(size):
-    """A figure with axes to scale for x and z and two places for colour bars to the right; lengths in inches."""
+def title_of(run, time):
+    """What a picture shows, and when, which stays on one line."""
+    when = f"t = {time:.4g} {units_of(run).named('s')}"
+    return f"{run.name}, " + when.replace(" ", "\u00a0")
+
+
+def side_view_axes(run, time, bars):
+    """A figure with axes to scale for x and z, that many places for colour bars to the right of them, and the title
+    above, in as many lines as it takes; lengths in inches. Its size is the same at all times (s), as films need it."""
+    size = run.size
     width, height = (7.0 * size[k] / max(size[0], size[2]) for k in (0, 2))
-    left, right, below, above = 0.75, 2.15, 0.6, 0.45
+    left, right, below = 0.75, 0.15 + 1.0 * bars, 0.6
+    letters = int((left + width + right - 0.2) / LETTER)
+    above = 0.25 + LINE * len(textwrap.wrap(title_of(run, -1.234e-100), letters))
     total = np.array([left + width + right, below + height + above])
     figure = plt.figure(figsize=total)
+    title = "\n".join(textwrap.wrap(title_of(run, time), letters))
+    figure.text(0.5, 1.0 - 0.12 / total[1], title, ha="center", va="top", fontsize=TITLE_SIZE)
 
     def place(x, z, w, h):
         return figure.add_axes([x / total[0], z / total[1], w / total[0], h / total[1]])
 
-    bars = [place(left + width + 0.2 + 1.0 * k, below, 0.18, height) for k in (0, 1)]
-    return figure, place(left, below, width, height), bars
+    axes, unit = place(left, below, width, height), units_of(run)
+    axes.set(xlabel=f"x [{unit.length}]{flow_direction(run)}", ylabel=f"z [{unit.length}]")
+    return figure, axes, [place(left + width + 0.2 + 1.0 * k, below, 0.18, height) for k in range(bars)]
 
 
-def flow_direction(run):
-    """Text after the label of the x axis: which way the fluid goes along x; none without a fluid, without anything that
-    drives it along x, or where walls and gravity drive it in opposite directions."""
+def flow_direction(run, from_y=-1.0):
+    """Text after the label of the x axis: which way the fluid goes along x, as seen from a direction whose component
+    along y is from_y; none without a fluid, without anything that drives it along x, or where walls and gravity drive it
+    in opposite directions."""
     fluid = run.case.get("fluid")
     if not fluid:
         return ""
@@ -118,7 +138,8 @@ def flow_direction(run):
     else:
         speeds = [velocity[0] for velocity in run.velocities_of_faces()]
         drives = set(np.sign([run.gravity[0], *speeds])) - {0.0}
-    return {(1.0,): ", flow to the right", (-1.0,): ", flow to the left"}.get(tuple(drives), "")
+    way = drives.pop() * -np.sign(from_y) if len(drives) == 1 else 0.0
+    return {1.0: ", flow to the right", -1.0: ", flow to the left"}.get(way, "")
 
 
 def draw_outlines(axes, position, radius, linewidth):
@@ -148,18 +169,19 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
     if scale is None:
         scale = max(PIXELS_PER_DIAMETER / (2 * np.median(radius)), 600 / max(size[0], size[2]))
         scale = min(scale, 3000 / max(size[0], size[2]))
-    figure, axes, bars = side_view_axes(size)
-    norm = colors.Normalize(0.0, 1e2 * largest_speed)
-    image = render_spheres(position, radius, 1e2 * speed, extent, scale, norm)
-    axes.imshow(image, origin="lower", extent=1e3 * extent, zorder=2)
-    figure.colorbar(plt.cm.ScalarMappable(norm, GRAIN_COLOURS), cax=bars[0], label="grain speed [cm/s]", extend="max")
     layer = fluid_slice(fluid) if fluid else None
-    if layer is None:
-        bars[1].remove()
-    else:
-        draw_water(figure, axes, bars[1], layer, largest_flow)
-    axes.set(xlabel=f"x [mm]{flow_direction(run)}", ylabel="z [mm]", xlim=(0, 1e3 * size[0]), ylim=(0, 1e3 * size[2]))
-    axes.set_title(f"{run.name}, t = {frame.time:.4g} s", fontsize=11)
+    figure, axes, bars = side_view_axes(run, frame.time, 1 if layer is None else 2)
+    unit = units_of(run)
+    norm = colors.Normalize(0.0, unit.per_speed * largest_speed)
+    image = render_spheres(position, radius, unit.per_speed * speed, extent, scale, norm)
+    axes.imshow(image, origin="lower", extent=unit.per_length * extent, zorder=2)
+    figure.colorbar(plt.cm.ScalarMappable(norm, GRAIN_COLOURS), cax=bars[0], label=f"grain speed [{unit.speed}]",
+                    extend="max")
+    if layer is not None:
+        draw_water(figure, axes, bars[1], layer, unit, largest_flow)
+    if layer is None or not layer[2].any():
+        draw_solids(axes, run, frame.time)
+    axes.set(xlim=(0, unit.per_length * size[0]), ylim=(0, unit.per_length * size[2]))
     return figure
 
 
@@ -169,20 +191,65 @@ def flow_figure(run, fluid, largest_flow=None):
     layer = fluid_slice(fluid) if fluid else None
     if layer is None:
         raise RunFolderError(f"{run.folder}: no frame of the velocity yet (output.fluid in the case).")
-    figure, axes, bars = side_view_axes(run.size)
-    draw_water(figure, axes, bars[0], layer, largest_flow)
-    bars[1].remove()
-    axes.set(xlabel=f"x [mm]{flow_direction(run)}", ylabel="z [mm]")
-    axes.set_title(f"{run.name}, t = {fluid.time:.4g} s", fontsize=11)
+    figure, axes, bars = side_view_axes(run, fluid.time, 1)
+    draw_water(figure, axes, bars[0], layer, units_of(run), largest_flow)
     return figure
 
 
-def draw_water(figure, axes, bar, layer, largest=None):
+def draw_water(figure, axes, bar, layer, unit, largest=None):
     """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed."""
     flow, box, solid = layer
-    water = axes.imshow(1e2 * without_holes(flow), origin="lower", extent=1e3 * np.array(box), cmap=FLUID_COLOURS,
-                        vmin=0.0, vmax=None if largest is None else 1e2 * largest, interpolation="bilinear", zorder=1)
-    figure.colorbar(water, cax=bar, label="fluid speed [cm/s]")
+    extent = unit.per_length * np.array(box)
+    water = axes.imshow(unit.per_speed * without_holes(flow), origin="lower", extent=extent, cmap=FLUID_COLOURS,
+                        vmin=0.0, vmax=None if largest is None else unit.per_speed * largest, interpolation="bilinear",
+                        zorder=1)
+    figure.colorbar(water, cax=bar, label=f"fluid speed [{unit.speed}]")
     if solid.any():
-        axes.imshow(np.ma.array(np.ones(solid.shape), mask=~solid), origin="lower", extent=1e3 * np.array(box),
-                    cmap=colors.ListedColormap([SOLID_COLOUR]), interpolation="nearest", zorder=1.5)
+        fill_solid(axes, solid, extent)
+
+
+def fill_solid(axes, solid, extent):
+    """Pixels [z, x] of solids, behind the grains."""
+    axes.imshow(np.ma.array(np.ones(solid.shape), mask=~solid), origin="lower", extent=extent,
+                cmap=colors.ListedColormap([SOLID_COLOUR]), interpolation="nearest", zorder=1.5)
+
+
+def draw_solids(axes, run, time):
+    """The cut of the solids with the middle plane across y, from their surfaces; nothing where none is stored."""
+    surfaces = run.solids.nearest(time)
+    if surfaces is None:
+        return
+    size = run.size
+    pixel = max(size[0], size[2]) / SOLID_PIXELS
+    x, z = ((np.arange(int(np.ceil(size[k] / pixel))) + 0.5) * pixel for k in (0, 2))
+    solid = np.zeros((len(z), len(x)), bool)
+    for number in np.unique(surfaces.solid):
+        solid |= inside_cut(surfaces.points[surfaces.triangles[surfaces.solid == number]], 0.5 * size[1], x, z)
+    if solid.any():
+        fill_solid(axes, solid, units_of(run).per_length * pixel * np.array([0, len(x), 0, len(z)]))
+
+
+def inside_cut(triangles, y, x, z):
+    """Whether the points of a grid, as [z, x], of the plane across y (m) are inside a closed surface of triangles
+    [triangle, corner, axis] (m): an odd number of edges of the cut lies beside them."""
+    ends = cut_of(triangles, y)
+    inside = np.zeros((len(z), len(x)), bool)
+    for row, height in enumerate(z):
+        crossing = ends[(ends[:, 0, 1] <= height) != (ends[:, 1, 1] <= height)]
+        (x0, z0), (x1, z1) = crossing[:, 0].T, crossing[:, 1].T
+        edges = np.sort(x0 + (height - z0) / (z1 - z0) * (x1 - x0))
+        inside[row] = np.searchsorted(edges, x) % 2 == 1
+    return inside
+
+
+def cut_of(triangles, y):
+    """Edges [edge, end, (x, z)] in which a plane across y (m) cuts triangles [triangle, corner, axis] (m)."""
+    above = triangles[..., 1] >= y
+    triangles, above = (of[above.any(axis=1) & ~above.all(axis=1)] for of in (triangles, above))
+    ends = []
+    for k in range(3):   # from each corner that is alone on its side to the other two
+        alone = (above[:, k] != above[:, k - 1]) & (above[:, k] != above[:, k - 2])
+        corner, others = triangles[alone, k][:, None], triangles[alone][:, [k - 1, k - 2]]
+        share = (y - corner[..., 1]) / (others[..., 1] - corner[..., 1])
+        ends.append((corner + share[..., None] * (others - corner))[..., [0, 2]])
+    return np.concatenate(ends)

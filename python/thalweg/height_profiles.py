@@ -6,6 +6,7 @@ import numpy as np
 from thalweg.bed import surface_by_solid_fraction
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
+from thalweg.units import units_of
 
 GRID = {"color": "#e5e8ea", "linewidth": 0.8}
 
@@ -123,7 +124,7 @@ def draw_velocities(axes, run, scaled):
         axes.set_xscale("log")
         axes.set_xlim(0.5 * max(np.nanmin(shown), 1e-5 * np.nanmax(shown)), 2.0 * np.nanmax(shown))
         axes.legend(fontsize=8, frameon=False, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
-    axes.set(xlabel="mean velocity along x [m/s]")
+    axes.set(xlabel=f"mean velocity along x [{units_of(run).mathematical('m/s')}]")
 
 
 def draw_stresses(axes, run, scaled):
@@ -134,7 +135,7 @@ def draw_stresses(axes, run, scaled):
         axes.plot(
             water[1], scaled(water[0]), color="0.45", ls=":", lw=1.5, label=r"$\rho\, g \sin\alpha\, (z_{top} - z)$"
         )
-    axes.set(xlabel="shear stress [Pa]")
+    axes.set(xlabel=f"shear stress [{units_of(run).mathematical('Pa')}]")
 
 
 def figure_of(run):
@@ -156,5 +157,6 @@ def figure_of(run):
         axes.axhline(0.0, color="0.6", lw=0.8)
         axes.grid(**GRID)
     right.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.suptitle(f"{run.name}, d = {1e3 * run.diameter:.3g} mm", fontsize=11)
+    units = units_of(run)
+    figure.suptitle(f"{run.name}, d = {units.per_length * run.diameter:.3g} {units.length}", fontsize=11)
     return figure

@@ -7,18 +7,20 @@ import numpy as np
 from thalweg import bed
 from thalweg.errors import RunFolderError
 from thalweg.means import DRIFTING, NOT_BOUNDED, STEADY, TOO_FEW, Mean, Steadiness, mean_with_error, steadiness
+from thalweg.units import units_of
 
 
 class Transport(NamedTuple):
-    """The mean of q* (of q_s in m^2/s without a fluid) between two measurements."""
-    start: float         # s, of the first measurement
-    stop: float          # s, of the last
+    """The mean of q* (of q_s without a fluid) between two measurements, in the units of the case."""
+    start: float         # time of the first measurement
+    stop: float          # of the last
     measurements: int
     rate: Mean
     verdict: Steadiness
     moving: Optional[tuple]   # mean number of moving grains and its standard error
     symbol: str
     unit: str                 # with a blank before it
+    second: str               # unit of the times
 
     def sentences(self):
         """The mean with its error, and the verdict."""
@@ -26,7 +28,8 @@ class Transport(NamedTuple):
         if self.measurements < 2:
             return (
                 (
-                    f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g} s: an error"
+                    f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g}"
+                    f" {self.second}: an error"
                     " takes at least two"
                 ),
             )
@@ -34,7 +37,7 @@ class Transport(NamedTuple):
         return (
             (
                 f"{self.symbol} = {rate.mean:.4g} +- {rate.error:.2g}{self.unit}, deviation {rate.deviation:.2g}, from"
-                f" {self.start:.4g} to {self.stop:.4g} s ({self.measurements} measurements worth"
+                f" {self.start:.4g} to {self.stop:.4g} {self.second} ({self.measurements} measurements worth"
                 f" {rate.independent:.3g} independent ones{few})"
             ), self.verdict.sentence(),
         )
@@ -54,7 +57,7 @@ def transport(run, start=None, stop=None):
         counts = counts[np.isfinite(counts)]
         moving = mean_with_error(counts)[:2] if len(counts) else None
     return Transport(float(time[0]), float(time[-1]), len(time), mean_with_error(rate), steadiness(rate), moving,
-                     *symbol_and_unit(column))
+                     *symbol_and_units(run, column))
 
 
 def column_of(run):
@@ -62,8 +65,11 @@ def column_of(run):
     return "q_star" if "q_star" in run.series else "q_s"
 
 
-def symbol_and_unit(column):
-    return ("q*", "") if column == "q_star" else ("q_s", " m^2/s")
+def symbol_and_units(run, column):
+    """The symbol of a rate, its unit and that of the times."""
+    units = units_of(run)
+    rate = ("q*", "") if column == "q_star" else ("q_s", f" {units.named('m^2/s')}")
+    return *rate, units.named("s")
 
 
 def of_run(run):
@@ -95,4 +101,5 @@ def by_the_run(run, column):
         number(f"{column}_drift_error"),
     )
     return Transport(found["measured_from"], found["measured_until"], int(found["measurements"]), rate, verdict,
-                     (number("moving_grains_mean"), number("moving_grains_error")), *symbol_and_unit(column))
+                     (number("moving_grains_mean"), number("moving_grains_error")),
+                     *symbol_and_units(run, column))

@@ -2,6 +2,7 @@
 missing."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -71,6 +72,31 @@ class Picture(unittest.TestCase):
         pixels = self.pixels()
         self.assertEqual(share(pixels, yellowish), 0.0)
         self.assertGreater(share(pixels, bluish), 0.1)
+
+    def test_a_tall_box_is_in_view(self):
+        case = self.folder / "case.yaml"
+        size = "[0.0594, 0.010725, 0.2475]"
+        case.write_text(re.sub(r"size: \[.*?\]", f"size: {size}", case.read_text()))
+        for view in ((-0.45, -1.0, 0.4), (0.0, 0.0, 1.0), (1.0, 0.0, -0.2)):
+            dark = self.pixels("--view", *map(str, view))[52:, :1120, :3].max(axis=2) < 0.7   # the box, below the title
+            for edge in (dark[0], dark[-1], dark[:, 0], dark[:, -1]):
+                self.assertFalse(edge.any())
+            self.assertGreater(max(np.ptp(np.flatnonzero(dark.any(axis=1))) / 1000,
+                                   np.ptp(np.flatnonzero(dark.any(axis=0))) / 1120), 0.8)
+
+    def test_what_cannot_be_drawn_is_refused(self):
+        (self.folder / "taken.png").mkdir()
+        for options, words in (
+            (("--view", "0", "0", "0"), "no direction"), (("--view", "nan", "0", "1"), "no direction"),
+            (("--size", "0", "0"), "from 1 to"), (("--size", "100000", "100000"), "from 1 to"),
+            (("--out", self.folder / "picture.jpg"), "is a .png"),
+            (("--out", self.folder / "taken.png"), "taken.png: Is a directory"),
+        ):
+            done = self.draw(*options)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn(words, done.stderr)
 
     def test_what_is_missing(self):
         for name, words in (

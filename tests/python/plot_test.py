@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import h5py
 import matplotlib.image
@@ -14,6 +15,7 @@ from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
+import made_up_folder  # noqa: E402
 import made_up_profiles  # noqa: E402
 import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
@@ -181,6 +183,52 @@ class Plot(unittest.TestCase):
         layer.mask[:] = True
         self.assertEqual(drawing.without_holes(layer).shape, (5, 5))
 
+    def test_figures_of_a_case_in_grain_units(self):
+        (self.folder / "fluid.pvd").unlink()
+        case = self.folder / "case.yaml"
+        text = case.read_text().replace("name: A made-up flume", "name: " + 20 * "long " + "name")
+        case.write_text(text + "model_fluid: {units: grain}\n")
+        series = self.folder / "series.csv"
+        series.write_text(series.read_text().replace("q_star [1]", "q_s [m^2/s]"))
+        run = thalweg.Run(self.folder)
+        figure = drawing.bed_figure(run, run.grains[-1])
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        view, bar = figure.axes   # one colour bar, and room for one only
+        self.assertEqual((view.get_xlabel(), view.get_ylabel()), ("x [D]", "z [D]"))
+        self.assertEqual(bar.get_ylabel(), "grain speed [sqrt(g'D)]")
+        np.testing.assert_allclose(view.get_ylim(), (0.0, run.size[2]))
+        figure.canvas.draw()
+        title = figure.texts[0].get_window_extent()
+        self.assertGreater(title.x0, 0.0)
+        self.assertLess(title.x1, figure.bbox.x1)
+        self.assertGreater(title.y0, view.get_window_extent().y1)
+        self.assertGreater(bar.get_tightbbox().x1, 0.9 * figure.bbox.x1)
+        rates = transport_rate.figure_of(run)
+        self.addCleanup(matplotlib.pyplot.close, rates)
+        self.assertEqual(rates.axes[0].get_ylabel(), "$q_s$ [sqrt(g'D$^3$)]")
+        self.assertEqual(rates.axes[-1].get_xlabel(), "time $t$ [sqrt(D/g')]")
+        self.assertIn(" sqrt(g'D^3), deviation", transport.transport(run).sentences()[0])
+
+    def test_the_cut_of_solids_without_a_slice_of_the_fluid(self):
+        (self.folder / "fluid.pvd").unlink()
+        size = thalweg.Run(self.folder).size
+        # A tetrahedron about the middle plane, which cuts it at half its height: half as wide as at its foot.
+        points = np.array([[0.25, 0, 0], [0.75, 0, 0], [0.5, 0, 1], [0.5, 1, 0]]) * size
+        triangles = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+        (self.folder / "solids").mkdir()
+        made_up_folder.write_triangles(self.folder / "solids/solids_0.vtp", points, triangles,
+                                       {"solid": np.zeros(4, np.int32)})
+        made_up_folder.write_index(self.folder / "solids.pvd", [(0.0, "solids/solids_0.vtp")])
+        x, z = np.linspace(0, size[0], 401), np.array([0.001, 0.25, 0.499, 0.51]) * size[2]
+        inside = drawing.inside_cut(points[triangles], 0.5 * size[1], x, z)
+        np.testing.assert_allclose(inside.mean(axis=1), (0.25, 0.125, 0.0, 0.0), atol=4e-3)   # a pixel and a half
+        np.testing.assert_allclose(x[inside[0]].mean(), 0.5 * size[0])
+        run = thalweg.Run(self.folder)
+        with unittest.mock.patch("thalweg.drawing.fill_solid") as fill:
+            figure = drawing.bed_figure(run, run.grains[-1])
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        self.assertAlmostEqual(fill.call_args[0][1].mean(), 0.5 * 0.25 * 0.5, delta=2e-3)   # a triangle
+
     def test_which_way_the_flow_goes(self):
         case, right, left = self.folder / "case.yaml", ", flow to the right", ", flow to the left"
         text = case.read_text()
@@ -195,6 +243,9 @@ class Plot(unittest.TestCase):
         ):
             case.write_text(text.replace("{type: law_of_the_wall}", sides) + f"gravity: {gravity}\nfluid: {fluid}\n")
             self.assertEqual(drawing.flow_direction(thalweg.Run(self.folder)), expected)
+        case.write_text(text + f"gravity: {{magnitude: 9.8, slope: 0.1}}\nfluid: {water}\n")
+        run = thalweg.Run(self.folder)
+        self.assertEqual([drawing.flow_direction(run, from_y) for from_y in (-0.1, 0.0, 0.1)], [right, "", left])
 
     def rate_panels(self, early):
         """The panels of transport_rate.png of three seconds about 0.05, of which the first 20 measurements are `early`,

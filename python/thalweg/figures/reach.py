@@ -5,6 +5,7 @@ import numpy as np
 from thalweg.errors import RunFolderError
 from thalweg.height_profiles import GRID
 from thalweg.records import parts_of
+from thalweg.units import units_of
 
 BED, RATE = "#7f6a4d", "#14496e"
 Q_STAR = r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
@@ -21,14 +22,14 @@ def edges_of(places):
     return np.append(places - half, places[-1] + half)
 
 
-def draw_in_time(figure, axes, reach, name, factor, label, **colours):
-    """An array [time, place] as colours over x (mm) and the time of the records."""
+def draw_in_time(figure, axes, reach, name, factor, label, units, **colours):
+    """An array [time, place] as colours over x and the time of the records."""
     places = reach[reach.dimensions(name)[1]]
     times = np.append(reach["time"][0] - reach["interval"][0], reach["time"])
     values = np.ma.masked_invalid(factor * reach[name])
-    drawn = axes.pcolormesh(1e3 * edges_of(places), times, values, **colours)
+    drawn = axes.pcolormesh(units.per_length * edges_of(places), times, values, **colours)
     axes.set_facecolor("0.85")
-    axes.set_ylabel("time $t$ [s]")
+    axes.set_ylabel(f"time $t$ [{units.named('s')}]")
     beyond = "max" if values.count() and values.max() > drawn.get_clim()[1] else "neither"
     figure.colorbar(drawn, ax=axes, label=label, pad=0.01, extend=beyond)
 
@@ -47,17 +48,17 @@ def counted(run, reach):
     return found if found.any() else np.ones_like(found)
 
 
-def draw_means(axes, means, name, label):
+def draw_means(axes, means, name, label, units):
     """The mean transport of the sections with its error, and at the right the mean level of the bins."""
-    x, rate, error = 1e3 * means["section"], means[name], np.nan_to_num(means[f"{name}_error"])
+    x, rate, error = units.per_length * means["section"], means[name], np.nan_to_num(means[f"{name}_error"])
     axes.fill_between(x, rate - error, rate + error, color=RATE, alpha=0.2, lw=0)
     axes.plot(x, rate, color=RATE, lw=1.4)
     axes.set_ylabel(label, color=RATE)
     axes.set_ylim(min(0.0, np.nanmin(rate - error)), None)
     axes.grid(**GRID)
     level = axes.twinx()
-    level.plot(1e3 * means["x"], 1e3 * means["bed_level"], color=BED, lw=1.4)
-    level.set_ylabel("bed level $z_b$ [mm]", color=BED)
+    level.plot(units.per_length * means["x"], units.per_length * means["bed_level"], color=BED, lw=1.4)
+    level.set_ylabel(f"bed level $z_b$ [{units.length}]", color=BED)
     level.spines["top"].set_visible(False)
     axes.spines["top"].set_visible(False)
 
@@ -69,19 +70,22 @@ def figure_of(run):
         raise RunFolderError(
             f"{run.folder}: no record of the reach is complete yet (analysis.reach.record_every in the case)."
         )
-    name, label = ("q_star", Q_STAR) if "q_star" in reach else ("q_s", r"$q_s$ [m$^2$/s]")
+    units = units_of(run)
+    name, label = ("q_star", Q_STAR) if "q_star" in reach else ("q_s", f"$q_s$ [{units.mathematical('m^2/s')}]")
     means = run.profiles.get("reach")
     has_means = means is not None and bool(np.isfinite(means[name]).any())
     figure, panels = plt.subplots(
         3 if has_means else 2, 1, figsize=(7.2, 7.5 if has_means else 5.4), sharex=True, layout="constrained"
     )
-    draw_in_time(figure, panels[0], reach, "bed_level", 1e3, "bed level $z_b$ [mm]", cmap="cividis")
-    draw_in_time(figure, panels[1], reach, name, 1.0, label, **colours_of(reach[name][counted(run, reach)]))
+    bed_label = f"bed level $z_b$ [{units.length}]"
+    draw_in_time(figure, panels[0], reach, "bed_level", units.per_length, bed_label, units, cmap="cividis")
+    draw_in_time(figure, panels[1], reach, name, 1.0, label, units, **colours_of(reach[name][counted(run, reach)]))
     if has_means:
-        draw_means(panels[2], means, name, label)
+        draw_means(panels[2], means, name, label, units)
         panels[2].set_title(
-            f"means from {run.averaged_from('reach'):.4g} s on, in a band of one standard error", fontsize=9, loc="left"
+            f"means from {run.averaged_from('reach'):.4g} {units.named('s')} on, in a band of one standard error",
+            fontsize=9, loc="left",
         )
-    panels[-1].set(xlabel="x [mm]", xlim=(0.0, 1e3 * run.size[0]))
+    panels[-1].set(xlabel=f"x [{units.length}]", xlim=(0.0, units.per_length * run.size[0]))
     figure.suptitle(run.name, fontsize=11)
     return figure

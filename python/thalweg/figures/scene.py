@@ -13,7 +13,7 @@ import numpy as np
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (what renders)
 from matplotlib.colors import to_rgb
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_ID_TYPE, vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
@@ -25,8 +25,11 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkGlyph3DM
 
 from thalweg import drawing
 from thalweg.errors import RunFolderError
+from thalweg.units import units_of
 
 SCENE_WIDTH = 0.80   # share of the picture; the colour scales take the rest
+FILLED = 0.88        # share of the scene that the box may take, which leaves room for the title above it
+MOST_PIXELS = 4096   # along a side; software draws larger ones for minutes or without end
 
 
 @contextlib.contextmanager
@@ -69,10 +72,11 @@ def lookup_table(colours, largest):
     return table
 
 
-def grain_actor(frame):
-    """Spheres coloured by speed (cm/s), and the scale."""
-    speed = 1e2 * np.linalg.norm(frame.velocity, axis=1)
-    table = lookup_table(drawing.GRAIN_COLOURS, 1e2 * drawing.largest_speed_of(speed / 1e2, np.median(frame.diameter)))
+def grain_actor(frame, per_speed):
+    """Spheres coloured by speed, per_speed of which are 1 m/s, and the scale."""
+    speed = np.linalg.norm(frame.velocity, axis=1)
+    largest = per_speed * drawing.largest_speed_of(speed, np.median(frame.diameter))
+    speed, table = per_speed * speed, lookup_table(drawing.GRAIN_COLOURS, largest)
     points, grains = vtkPoints(), vtkPolyData()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(frame.position, float), deep=True))
     grains.SetPoints(points)
@@ -97,10 +101,10 @@ def grain_actor(frame):
     return actor, table
 
 
-def slice_actor(frame, layer, y):
-    """The fluid's speed (cm/s) in the middle layer across y, drawn at y (m), and the scale."""
+def slice_actor(frame, layer, y, per_speed):
+    """The fluid's speed in the middle layer across y, drawn at y (m), per_speed of which are 1 m/s, and the scale."""
     speed, box, _ = layer
-    values = 1e2 * drawing.without_holes(speed)
+    values = per_speed * drawing.without_holes(speed)
     table = lookup_table(drawing.FLUID_COLOURS, max(float(values.max()), 1e-12))
     image, points = vtkImageData(), vtkCellDataToPointData()
     image.SetDimensions(values.shape[1] + 1, 1, values.shape[0] + 1)
@@ -150,10 +154,10 @@ def plain_text(properties, size):
     properties.ShadowOff()
 
 
-def scale_bar(table, title, place, font):
+def scale_bar(table, title, unit, place, font):
     bar = vtkScalarBarActor()
     bar.SetLookupTable(table)
-    bar.SetTitle(f"{title}\n[cm/s]\n")
+    bar.SetTitle(f"{title}\n[{unit}]\n")
     bar.SetNumberOfLabels(5)
     bar.SetLabelFormat("%.3g")
     bar.UnconstrainedFontSizeOn()
@@ -176,8 +180,9 @@ def pictured(run, time):
     return grains, fluid
 
 
-def scene(run, grains, fluid, far_side, font):
-    """Two renderers: the scene and its colour scales. far_side: y (m) of the slice."""
+def scene(run, grains, fluid, direction, font):
+    """Two renderers: the scene and its colour scales. direction: from which to look."""
+    far_side = run.size[1] if direction[1] < 0.0 else 0.0   # y of the slice, m
     view, margin = vtkRenderer(), vtkRenderer()
     view.SetViewport(0.0, 0.0, SCENE_WIDTH, 1.0)
     margin.SetViewport(SCENE_WIDTH, 0.0, 1.0, 1.0)
@@ -188,17 +193,18 @@ def scene(run, grains, fluid, far_side, font):
     solids = run.solids.nearest((grains or fluid).time)
     if solids:
         view.AddActor(solid_actor(solids))
-    shown = [("grain speed", *grain_actor(grains))] if grains else []
+    unit = units_of(run)
+    shown = [("grain speed", *grain_actor(grains, unit.per_speed))] if grains else []
     layer = drawing.fluid_slice(fluid) if fluid else None
     if layer is not None:
-        shown.append(("fluid speed", *slice_actor(fluid, layer, far_side)))
+        shown.append(("fluid speed", *slice_actor(fluid, layer, far_side, unit.per_speed)))
     if not shown:
         raise RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
     for place, (title, actor, table) in enumerate(shown):
         view.AddActor(actor)
-        margin.AddActor2D(scale_bar(table, title, place, font))
+        margin.AddActor2D(scale_bar(table, title, unit.speed, place, font))
     title = vtkTextActor()
-    title.SetInput(f"{run.name}, t = {(grains or fluid).time:.4g} s{drawing.flow_direction(run)}")
+    title.SetInput(drawing.title_of(run, (grains or fluid).time) + drawing.flow_direction(run, direction[1]))
     plain_text(title.GetTextProperty(), font)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.03, 0.955)
@@ -206,41 +212,55 @@ def scene(run, grains, fluid, far_side, font):
     return view, margin
 
 
-def look_from(view, size, direction):
-    """Points the camera at the middle of the box from a direction, with all of the box in view."""
+def look_from(view, size, direction, aspect):
+    """Points the camera at the middle of the box from a direction, as near as it can be with all of the box in view
+    below the title. aspect: width of the view over its height."""
     camera, middle = view.GetActiveCamera(), 0.5 * np.asarray(size)
+    towards = np.asarray(direction) / np.linalg.norm(direction)
+    upwards = np.array([0.0, 0.0, 1.0]) if np.hypot(*towards[:2]) > 1e-6 else np.array([0.0, 1.0, 0.0])
+    right = np.cross(upwards, towards) / np.linalg.norm(np.cross(upwards, towards))
+    corners = (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5) * size
+    half = FILLED * np.tan(np.radians(0.5 * camera.GetViewAngle()))   # of the height, at a distance of one
+    across = np.maximum(abs(corners @ right) / aspect, abs(corners @ np.cross(towards, right)))
     camera.SetFocalPoint(*middle)
-    camera.SetPosition(*(middle + np.linalg.norm(size) * np.asarray(direction) / np.linalg.norm(direction)))
-    camera.SetViewUp(0.0, 0.0, 1.0)
-    view.ResetCamera()
-    camera.Zoom(1.1)
+    camera.SetPosition(*(middle + np.max(across / half + corners @ towards) * towards))
+    camera.SetViewUp(*upwards)
     view.ResetCameraClippingRange()
 
 
-def write_picture(run, grains, fluid, path, direction, pixels):
+def picture_of(run, grains, fluid, direction, pixels):
+    """The content of a .png."""
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(8)   # smooth edges
     window.SetSize(*pixels)
-    far_side = run.size[1] if direction[1] < 0.0 else 0.0
-    renderers = scene(run, grains, fluid, far_side, max(10, pixels[1] // 45))
+    renderers = scene(run, grains, fluid, direction, max(10, pixels[1] // 45))
     for renderer in renderers:
         window.AddRenderer(renderer)
-    look_from(renderers[0], run.size, direction)
+    look_from(renderers[0], run.size, direction, SCENE_WIDTH * pixels[0] / pixels[1])
     window.Render()
     image, writer = vtkWindowToImageFilter(), vtkPNGWriter()
     image.SetInput(window)
     image.ReadFrontBufferOff()
     writer.SetInputConnection(image.GetOutputPort())
-    writer.SetFileName(str(path))
+    writer.WriteToMemoryOn()
     writer.Write()
     window.Finalize()
+    return vtk_to_numpy(writer.GetResult()).tobytes()
 
 
 def draw(run, path, time, direction, pixels):
     """Writes a .png of the frames nearest to a time (s; None: the last). direction: from which to look; pixels: width
     and height."""
+    if not 0.0 < np.linalg.norm(direction) < np.inf:
+        raise RunFolderError(f"--view {' '.join(f'{n:g}' for n in direction)}: this is no direction; give three numbers, "
+                             "not all of them zero.")
+    if not all(0 < count <= MOST_PIXELS for count in pixels):
+        raise RunFolderError(f"--size {pixels[0]} {pixels[1]}: give a width and a height from 1 to {MOST_PIXELS} pixels.")
+    if path.suffix.lower() != ".png":
+        raise RunFolderError(f"--out {path}: a picture is a .png; give a name that ends so.")
     grains, fluid = pictured(run, time)
     path.parent.mkdir(parents=True, exist_ok=True)
     with display():
-        write_picture(run, grains, fluid, path, direction, pixels)
+        picture = picture_of(run, grains, fluid, direction, pixels)
+    path.write_bytes(picture)

@@ -6,6 +6,7 @@ import numpy as np
 from thalweg import transport
 from thalweg.errors import RunFolderError
 from thalweg.means import running_mean
+from thalweg.units import units_of
 
 RATE_COLOUR, SMOOTH_COLOUR, MEAN_COLOUR = "#9bbfd6", "#14496e", "#c0392b"
 LEAST_SHARE = 0.35   # of the axis that the rates in the averaging window fill; below, a second panel enlarges them
@@ -22,14 +23,14 @@ def mean_transport(run):
         return None
 
 
-def draw_rates(axes, time, rate, found):
+def draw_rates(axes, time, rate, found, second):
     """The measured rates and their running mean over a tenth of the time; behind them the averaging window, with the
-    mean in a band of one standard error on either side."""
+    mean in a band of one standard error on either side. second: the unit of the times."""
     axes.plot(time, rate, color=RATE_COLOUR, linewidth=0.9, zorder=3, label="measured")
     if len(time) > 100:
         window = 0.1 * (time[-1] - time[0])
         axes.plot(time, running_mean(time, rate, window), color=SMOOTH_COLOUR, linewidth=1.6, zorder=4,
-                  label=f"running mean over {window:.2g} s")
+                  label=f"running mean over {window:.2g} {second}")
     if found is not None:
         axes.axvspan(found.start, found.stop, color="0.94", lw=0, zorder=0)
         mean, error = found.rate.mean, found.rate.error
@@ -39,7 +40,7 @@ def draw_rates(axes, time, rate, found):
             )
         known = f" \u00b1 {error:.2g}" if np.isfinite(error) else ""
         axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
-                    label=f"mean from {found.start:.4g} to {found.stop:.4g} s: {mean:.4g}{known}{found.unit}")
+                    label=f"mean from {found.start:.4g} to {found.stop:.4g} {second}: {mean:.4g}{known}{found.unit}")
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -65,7 +66,7 @@ def figure_of(run):
     series = run.series
     name, label = "q_star", r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
     if name not in series:
-        name, label = "q_s", r"$q_s$ [m$^2$/s]"
+        name, label = "q_s", f"$q_s$ [{units_of(run).mathematical('m^2/s')}]"
     if name not in series:
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star "
                                      "(analysis.transport_rate in the case).")
@@ -73,7 +74,7 @@ def figure_of(run):
     time, rate = series["time"][known], series[name][known]
     if not len(time):
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no measurement of the transport rate yet.")
-    found = mean_transport(run)
+    found, second = mean_transport(run), units_of(run).named("s")
     inside = rate[(time >= found.start) & (time <= found.stop)] if found is not None else rate
     enlarged = np.ptp(padded(inside)) < LEAST_SHARE * np.ptp(padded(rate))
     figure, panels = plt.subplots(2 if enlarged else 1, 1, figsize=(6.4, 5.4 if enlarged else 3.6), squeeze=False,
@@ -82,14 +83,14 @@ def figure_of(run):
         if run.system == "continuum":
             draw_column(axes, time, rate)
         else:
-            draw_rates(axes, time, rate, found)
+            draw_rates(axes, time, rate, found, second)
         axes.set(ylabel=label, ylim=padded(shown))
     end = time[-1] if time[-1] > time[0] else time[0] + 1.0
     panels[0, 0].set(xlim=(time[0], end))
     if enlarged:
         panels[1, 0].set(xlim=(found.start, max(found.stop, found.start + 1e-3 * end)))
         panels[1, 0].set_title("the averaging window, enlarged", fontsize=10)
-    panels[-1, 0].set_xlabel("time $t$ [s]")
+    panels[-1, 0].set_xlabel(f"time $t$ [{second}]")
     panels[0, 0].legend(
         frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
         handlelength=1.6,

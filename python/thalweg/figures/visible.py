@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg.height_profiles import GRID
+from thalweg.units import units_of
 from thalweg.visible_profiles import visible_profiles
 
 
@@ -24,8 +25,9 @@ def figure_of(runs, start, stop, most_frames):
         axes[1].semilogx(positive(means["velocity"][:, 0]), z, "o-", ms=3, lw=0.8)
         axes[2].semilogx(positive(means["temperature"]), z, "o-", ms=3, lw=0.8)
     axes[0].set(xlabel="areal fraction", ylabel="height from the surface [d]")
-    axes[1].set(xlabel="velocity along x [m/s]")
-    axes[2].set(xlabel="temperature [m²/s²]")
+    units = units_of(runs[0])
+    axes[1].set(xlabel=f"velocity along x [{units.mathematical('m/s')}]")
+    axes[2].set(xlabel=f"temperature [{units.mathematical('m^2/s^2')}]")
     axes[0].legend(fontsize=8)
     for axis in axes:
         axis.axhline(0.0, color="0.6", lw=0.8)

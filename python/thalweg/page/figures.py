@@ -3,13 +3,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg.height_profiles import GRID
+from thalweg.units import units_of
 
 # Columns of series.csv and what they are called, in the order in which they count.
 COURSE = {
-    "moving_grains": "moving grains [1]", "largest_grain_speed": "largest grain speed [m/s]",
-    "grain_kinetic_energy": "kinetic energy of the grains [J]", "contacts": "contacts [1]",
-    "mean_velocity_x": "mean velocity of the fluid [m/s]", "largest_fluid_speed": "largest fluid speed [m/s]",
-    "bed_stress": "stress on the bed [Pa]", "surface_height": "height of the bed [m]",
+    "moving_grains": "moving grains", "largest_grain_speed": "largest grain speed",
+    "grain_kinetic_energy": "kinetic energy of the grains", "contacts": "contacts",
+    "mean_velocity_x": "mean velocity of the fluid", "largest_fluid_speed": "largest fluid speed",
+    "bed_stress": "stress on the bed", "surface_height": "height of the bed",
     "largest_overlap": "largest overlap",
 }
 MOST = 4   # panels
@@ -27,7 +28,7 @@ def series_figure(run):
     ][:MOST]
     if not names:
         return None
-    rows = (len(names) + 1) // 2
+    rows, units = (len(names) + 1) // 2, units_of(run)
     figure, panels = plt.subplots(
         rows, min(2, len(names)), figsize=(9.0 if len(names) > 1 else 5.0, 2.3 * rows), squeeze=False, sharex=True,
         layout="constrained",
@@ -36,10 +37,8 @@ def series_figure(run):
         axes.remove()
     for axes, name in zip(panels.flat, names):
         axes.plot(series["time"], series[name], color="#14496e", lw=1.0)
-        unit = series.units[name]
-        label = COURSE[name] if "[" in COURSE[name] else f"{COURSE[name]} [{unit}]"
-        axes.set_title(label, fontsize=9, loc="left")
-        axes.set(xlabel="time [s]", ylim=(0.0, None) if np.nanmin(series[name]) >= 0.0 else None)
+        axes.set_title(f"{COURSE[name]} [{units.mathematical(series.units[name])}]", fontsize=9, loc="left")
+        axes.set(xlabel=f"time [{units.named('s')}]", ylim=(0.0, None) if np.nanmin(series[name]) >= 0.0 else None)
         axes.grid(**GRID)
         axes.spines[["top", "right"]].set_visible(False)
     return figure

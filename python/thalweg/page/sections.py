@@ -13,6 +13,7 @@ from thalweg.history import command_of, sessions_of, settings_in, warnings_of
 from thalweg.sizes import Sizes
 from thalweg.sizes import measured as measured_by_size
 from thalweg.transport import sentence_of_column, state_of_column, transport
+from thalweg.units import units_of
 
 SYSTEMS = {
     "resolved": "resolved flow with grains", "fluid": "fluid alone", "grains": "dry grains",
@@ -48,17 +49,18 @@ def last_time(run):
 
 
 def heading(run, sessions):
-    summary, time = run.summary, last_time(run)
+    summary, time, second = run.summary, last_time(run), units_of(run).named("s")
     if summary is None:
         kind = "unfinished"
-        state = f"Not ended{'' if time is None else f', at {time:.4g} s'}: it is still going, has failed or was killed."
+        place = "" if time is None else f", at {time:.4g} {second}"
+        state = f"Not ended{place}: it is still going, has failed or was killed."
     elif summary["finished"]:
-        kind, state = "finished", f"Finished at {number(summary['simulated_time'])} s."
+        kind, state = "finished", f"Finished at {number(summary['simulated_time'])} {second}."
     else:
         kind = "unfinished"
         state = (
             f"Not finished, {summary['reason']}: at {number(summary['simulated_time'])} of"
-            f" {number(summary['until'])} s."
+            f" {number(summary['until'])} {second}."
         )
     system = str(run.case.get("system", "resolved"))
     lead = SYSTEMS.get(system, system)
