@@ -106,7 +106,7 @@ class FluidFrame:
         return Columns(self._image[2], FLUID_UNITS, source=self.path)
 
     def _with_places(self):
-        places = {axis: self.centres("xyz".index(axis)) for axis in "zyx"}
+        places = {axis: self.centres(axis) for axis in "zyx"}
         components = {name: AXES[values.shape[3]] for name, values in self._image[2].items() if values.ndim > 3}
         columns = Columns(
             {**self._image[2], **places}, {**FLUID_UNITS, **dict.fromkeys("xyz", "m")}, components, self.path, "zyx"
@@ -124,7 +124,8 @@ class FluidFrame:
         return self._with_places().to_xarray().assign_attrs(time=self.time)
 
     def centres(self, axis):
-        """Middle of the cells along x (0), y (1) or z (2), in m."""
+        """Middle of the cells along x, y or z, by letter or number ("x" or 0), in m."""
+        axis = "xyz".index(axis) if isinstance(axis, str) else axis
         count = next(iter(self._image[2].values())).shape[2 - axis]
         return self.corner[axis] + (np.arange(count) + 0.5) * self.spacing[axis]
 

@@ -28,6 +28,8 @@ def merged_rows(path, rows):
     for name in dict.fromkeys(row["run"] for row in kept + rows):
         of_this = [row for row in rows if row["run"] == name]
         merged += of_this or [row for row in kept if row["run"] == name]
+    if not merged:
+        raise RunFolderError(f"{path}: there is no run in this table and none to put into it; give run folders.")
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0] if rows else merged[0]), lineterminator="\n")
         writer.writeheader()

@@ -4,6 +4,7 @@ Arrays lie in one appended section, raw or in base64, in blocks compressed by zl
 64 bits: the format of the VTK User's Guide, "VTK XML formats", as Thalweg and VTK's own writers make it.
 """
 import base64
+import functools
 import mmap
 import xml.etree.ElementTree as xml
 import zlib
@@ -14,6 +15,19 @@ from thalweg.errors import RunFolderError
 
 TYPES = {"Int8": "i1", "UInt8": "u1", "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8", "Float32": "f4",
          "Float64": "f8"}
+
+
+def naming_damage(read):
+    """A function that reads the file of a path, which says in a sentence when the file ends too soon or is no VTK
+    file."""
+    @functools.wraps(read)
+    def reading(path):
+        try:
+            return read(path)
+        except (xml.ParseError, zlib.error, ValueError, TypeError, AttributeError, LookupError, StopIteration):
+            raise RunFolderError(f"{path} is damaged or was not written to its end; a restart of the run from before this "
+                                 "frame writes it again.") from None
+    return reading
 
 
 class Appended:
@@ -88,6 +102,7 @@ def arrays_in(section, appended, path):
     return found
 
 
+@naming_damage
 def read_points(path):
     """Positions (m) of the points in a .vtp file and their arrays by name."""
     root, appended = open_file(path)
@@ -96,6 +111,7 @@ def read_points(path):
     return points.astype(float), arrays_in(piece.find("PointData"), appended, path)
 
 
+@naming_damage
 def read_triangles(path):
     """Points (m), triangles as three numbers of points, and arrays of the triangles by name, of a .vtp file."""
     root, appended = open_file(path)
@@ -109,6 +125,7 @@ def numbers(text, kind=float):
     return np.array([kind(word) for word in text.split()])
 
 
+@naming_damage
 def read_image(path):
     """Lower corner (m), spacing (m) and arrays of the cells, as [z, y, x] and a component, of a .vti or .pvti file."""
     root, appended = open_file(path)

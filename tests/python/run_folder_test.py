@@ -8,7 +8,7 @@ import numpy as np
 import made_up_folder as made_up
 import thalweg
 from thalweg import film
-from thalweg.vtk_files import read_image, read_points
+from thalweg.vtk_files import read_image, read_points, read_triangles
 
 
 def raw(writer):
@@ -63,6 +63,19 @@ class VtkFiles(made_up.MadeUpFolder):
         made_up.write_points(path, np.zeros((1, 3)), {}, lambda writer: writer.SetDataModeToAscii())
         with self.assertRaisesRegex(thalweg.RunFolderError, "only appended is read"):
             read_points(path)
+
+    def test_a_file_that_ends_too_soon_is_said_in_a_sentence(self):
+        points, image = self.folder / "points.vtp", self.folder / "image.vti"
+        made_up.write_points(points, np.ones((100, 3)), {"id": np.arange(100)})
+        made_up.write_image(image, (0, 9, 0, 9, 0, 9), 0.5, {"pressure": np.arange(729.0).reshape(9, 9, 9)})
+        for path, read in ((points, read_points), (points, read_triangles), (image, read_image)):
+            whole = path.read_bytes()
+            start = whole.index(b"<AppendedData")
+            for length in (40, start // 2, start + 60, start + 90):
+                path.write_bytes(whole[:length])
+                with self.assertRaisesRegex(thalweg.RunFolderError, f"{path.name} is damaged"):
+                    read(path)
+            path.write_bytes(whole)
 
     def test_an_image_and_its_pieces(self):
         generator = np.random.default_rng(2)
@@ -357,6 +370,7 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertEqual(frame.arrays.units["pressure"], "Pa")
         np.testing.assert_array_equal(frame.centres(1), (1.75,))
         np.testing.assert_array_equal(frame.centres(2), (0.25, 0.75, 1.25, 1.75))
+        np.testing.assert_array_equal(frame.centres("z"), frame.centres(2))
 
     def test_profiles_with_units_and_components(self):
         with h5py.File(self.folder / "profiles.h5", "w") as file:

@@ -4,6 +4,7 @@ import unittest
 from pathlib import Path
 
 import made_up_folder   # noqa: F401  finds the package
+from thalweg.errors import RunFolderError
 from thalweg.tables import merged_rows, read_rows
 
 
@@ -19,6 +20,13 @@ class MergedRows(unittest.TestCase):
             )
             self.assertEqual(read_rows(path), merged)
             self.assertEqual(merged_rows(path, []), merged)
+
+    def test_a_new_table_of_no_runs_is_not_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            with self.assertRaisesRegex(RunFolderError, "table.csv: there is no run"):
+                merged_rows(path, [])
+            self.assertFalse(path.exists())
 
     def test_without_a_table_nothing_is_kept(self):
         self.assertEqual(merged_rows(None, [{"run": "a"}]), [{"run": "a"}])
