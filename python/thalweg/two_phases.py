@@ -67,6 +67,12 @@ def decay_length(height, velocity):
     return 1.0 / np.polyfit(height[deep], np.log(velocity[deep]), 1)[0]
 
 
+def e_fold(height, velocity, before=""):
+    """The decay length in words, with what stands before them; empty where it cannot be fitted."""
+    length = decay_length(height, velocity)
+    return f"{before}e-fold {length:.2f} d" if np.isfinite(length) else ""
+
+
 def different_materials(run, column):
     """What two runs should share and do not, as text; empty if they are the same."""
     def values(of):
@@ -141,7 +147,7 @@ def draw_creep(axes, bed, column):
     at 2 d."""
     moving = (bed.height < 1.0) & (bed.grain_velocity > 0.0)
     axes.semilogx(bed.grain_velocity[moving], bed.height[moving], color=GRAINS,
-                  label=f"run, e-fold {decay_length(bed.height, bed.grain_velocity):.2f} d")
+                  label="run" + e_fold(bed.height, bed.grain_velocity, ", "))
     if column is not None and "creep_velocity" in column.profiles["continuum"]:
         of = column.profiles["continuum"]
         height, creep = -of["creep_depth"] / column.diameter, of["creep_velocity"]
@@ -150,7 +156,7 @@ def draw_creep(axes, bed, column):
         creep = creep * at_two / np.interp(-CREEP_FIT[0], height[order], creep[order])
         shown = creep > 0.0
         axes.semilogx(
-            creep[shown], height[shown], "k--", label=f"granular fluidity, e-fold {decay_length(height, creep):.2f} d"
+            creep[shown], height[shown], "k--", label="granular fluidity" + e_fold(height, creep, ", ")
         )
     slowest = np.min(bed.grain_velocity[moving & (bed.height > -10.0)], initial=np.inf)
     fastest = np.max(bed.grain_velocity[moving], initial=0.0)

@@ -93,6 +93,11 @@ class TwoPhases(MadeUpFolder):
         upwards[bed.height < -2.5] = 0.0
         self.assertTrue(np.isnan(two_phases.decay_length(bed.height, upwards)))
 
+    def test_a_decay_that_cannot_be_fitted_is_left_out(self):
+        height = np.arange(-8.0, 0.0)
+        self.assertEqual(two_phases.e_fold(height, np.exp(height / 1.2), ", "), ", e-fold 1.20 d")
+        self.assertEqual(two_phases.e_fold(height, 0.0 * height, ", "), "")
+
     def test_figure_alone_and_with_a_column(self):
         run, column = Run(self.folder), self.made_up_column()
         for other in (None, column):

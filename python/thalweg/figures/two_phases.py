@@ -21,10 +21,17 @@ def transport(run):
     return bed.measured_shields_number(run, start, math.inf), mean_with_error(bed.transport_rate(run, start)[1]).mean
 
 
+def print_creep(name, height, velocity):
+    """Its decay length, where it can be fitted."""
+    length = two_phases.e_fold(height, velocity)
+    if length:
+        print(f"creep of the {name}: {length}")
+
+
 def report(run, column):
     layers = two_phases.resolved_bed(run)
     print("Shields number {:.4f}, q* {:.4f}".format(*transport(run)))
-    print(f"creep of the run: e-fold {two_phases.decay_length(layers.height, layers.grain_velocity):.2f} d")
+    print_creep("run", layers.height, layers.grain_velocity)
     if column is None:
         return
     print("continuum: Shields number {:.4f}, q* {:.4f}".format(*transport(column)))
@@ -33,10 +40,7 @@ def report(run, column):
         print(f"thalweg: the two runs differ: {different}.", file=sys.stderr)
     of = column.profiles["continuum"]
     if "creep_velocity" in of:
-        print(
-            "creep of the continuum: e-fold"
-            f" {two_phases.decay_length(-of['creep_depth'] / column.diameter, of['creep_velocity']):.2f} d"
-        )
+        print_creep("continuum", -of["creep_depth"] / column.diameter, of["creep_velocity"])
 
 
 def draw(folder, continuum=None):
