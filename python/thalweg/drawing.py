@@ -20,6 +20,13 @@ SOLID_PIXELS = 800   # along the longer side of the box, of the cut of solids
 LINE, LETTER = 1.3 * TITLE_SIZE / 72.0, 0.6 * TITLE_SIZE / 72.0   # inches: height of a line, width of a letter
 
 
+def refuse_column(run):
+    """A continuum has no frames to be drawn."""
+    if run.system == "continuum":
+        raise RunFolderError(f"{run.folder}: a run of system: continuum has neither grains nor flow in space to show; "
+                             "thalweg plot profiles draws its column.")
+
+
 def colour_of(number):
     """Colour of one of up to twenty curves: ten colours, then the same paler."""
     return matplotlib.colormaps["tab20"]((2 * number) % 20 + number // 10 % 2)

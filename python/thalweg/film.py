@@ -13,6 +13,7 @@ from thalweg.errors import RunFolderError
 def chosen_frames(run, start=-np.inf, stop=np.inf, every=0.0):
     """The frames between two times (s), at least `every` seconds apart: of the grains, or of the fluid where there are
     none."""
+    drawing.refuse_column(run)
     shown, kind = (run.grains, "grains") if len(run.grains) else (run.fluid, "fluid")
     frames, found, due = shown.between(start, stop), [], -np.inf
     for k, time in enumerate(frames.times):

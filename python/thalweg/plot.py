@@ -25,6 +25,13 @@ def saved(figure, path):
     return path
 
 
+def refuse_suffix(path):
+    """Names of figures end as one of the formats that can be drawn."""
+    formats = module("matplotlib.backend_bases").FigureCanvasBase.get_supported_filetypes()
+    if path.suffix[1:].lower() not in formats:
+        raise RunFolderError(f"--out {path}: a figure ends in .{', .'.join(sorted(formats))}.")
+
+
 def refuse_one_name(wanted):
     """The figures of several runs would have the same name."""
     if wanted.out and len(wanted.runs) > 1:
@@ -71,6 +78,9 @@ def draw_profiles(wanted):
 
     def figure_of(run):
         draw = overview.profiles_of(run)
+        if draw is None and run.system == "continuum":
+            raise RunFolderError(f"{run.folder / 'profiles.h5'}: there are no profiles of the column yet; the run writes "
+                                 "them at its end.")
         if draw is None:
             raise RunFolderError(
                 f"{run.folder / 'profiles.h5'}: it has no means of grains or fluid yet (analysis.grain_profiles, "
@@ -233,6 +243,8 @@ def add_film(film):
 
 
 def plot(wanted):
+    if wanted.out and wanted.kind not in ("all", "film", "picture"):   # which have names of their own
+        refuse_suffix(wanted.out)
     for path in wanted.draw(wanted):
         print(path, flush=True)
     return 0

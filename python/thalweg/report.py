@@ -92,6 +92,11 @@ def window(run, start=None, stop=None):
     return max(start, float(times[0])), min(stop, float(times[-1]))
 
 
+def end_of(run):
+    """Time (s) that the run has come to, which may be after the last row of series.csv."""
+    return max(float(run.series["time"][-1]), float((run.summary or {}).get("simulated_time") or 0.0))
+
+
 def describe_transport(report):
     found = transport(report.run, *report.wanted)
     mean, verdict = found.rate, found.verdict
@@ -241,7 +246,7 @@ def report_of(run, start=None, stop=None):
     """Report of a run between two times (s); see window() for what counts where none are given."""
     report = Report(run, start, stop)
     times = f"{report.stop:g}" if run.system == "continuum" else f"{report.start:g} to {report.stop:g}"
-    report.say("run", f"{run.name}: {times} s of {run.series['time'][-1]:g} s")
+    report.say("run", f"{run.name}: {times} s of {end_of(run):g} s")
     if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
         report.say("window", "shorter than wanted: series.csv has no rows of the rest")
     if run.system == "continuum":

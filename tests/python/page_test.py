@@ -18,6 +18,7 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "tests/support")]
 import made_up_profiles  # noqa: E402
 import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
+from thalweg.figures import overview  # noqa: E402
 from thalweg.history import sessions_of, settings_in, warnings_of  # noqa: E402
 from thalweg.page.sections import page_of  # noqa: E402
 
@@ -181,10 +182,21 @@ class Report(unittest.TestCase):
         )
         page = self.page()
         self.assertIn("q* = 0.08 at 10 s, unsteadiness 1e-05.", page.text)
-        self.assertNotIn("steady or not", page.text)
+        self.assertEqual([name for name, _ in overview.figures_of(thalweg.Run(self.folder))],
+                         ["transport_rate", "profiles"])
+        self.assertNotIn("too short", page.text)
         self.assertNotIn("standard error", page.text)
         self.assertNotIn("Picture", page.sections)
         self.assertIn("Profiles", page.sections)
+
+    def test_captions_of_dry_grains(self):
+        self.case(head="system: grains\n")
+        (self.folder / "fluid.pvd").unlink()
+        series = self.folder / "series.csv"
+        series.write_text(series.read_text().replace("q_star [1]", "q_s [m^2/s]"))
+        text = self.page().text
+        self.assertNotIn("in front of the flow", text)
+        self.assertIn("q_s is the volume of grains that passes per unit width and time;", text)
 
     def test_a_run_with_nothing_yet(self):
         for path in self.folder.iterdir():

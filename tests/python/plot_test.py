@@ -285,6 +285,14 @@ class Plot(unittest.TestCase):
         self.assertEqual([text.get_text() for text in figure.axes[0].get_legend().get_texts()],
                          ["column", "at 10 s: 0.08"])
 
+    def test_a_figure_has_a_name_that_can_be_drawn(self):
+        for name in ("a.txt", "a"):
+            for kind in ("side", "q"):
+                done = self.plot("--out", self.folder / name, kind=kind)
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(f"{name}: a figure ends in ", done.stderr)
+                self.assertEqual(len(done.stderr.splitlines()), 1)
+
     def test_axes_of_nothing(self):
         self.assertEqual(transport_rate.padded(np.zeros(3)), (0.0, 0.05))
 

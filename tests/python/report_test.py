@@ -202,6 +202,10 @@ class Reports(made_up.MadeUpFolder):
         self.assertEqual(numbers["moving_grains"], {"mean": 7.0, "error": None})
         self.assertAlmostEqual(report_of(run, 1.0).numbers["q_star"]["mean"], 0.1, 3)   # of the rows
 
+    def test_a_run_that_ended_between_two_rows(self):
+        (self.folder / "summary.json").write_text('{"simulated_time": 4.0037}')
+        self.assertIn("1 to 4 s of 4.0037 s", report_of(thalweg.Run(self.folder)).lines[0])
+
     def test_times(self):
         run = thalweg.Run(self.folder)
         self.assertEqual(window(run), (1.0, 4.0))
@@ -244,6 +248,9 @@ class OtherSystems(made_up.MadeUpFolder):
         self.assertTrue(any("2 mm of grains in motion: Shields number 0.088" in line for line in report.lines))
         earlier = report_of(thalweg.Run(self.folder), stop=7.0).numbers
         self.assertEqual((earlier["until"], earlier["continuum"]["q_star"]), (5.0, 0.06))
+        for kind in ("side", "film", "picture"):
+            self.assertIn("neither grains nor flow in space to show; thalweg plot profiles", self.refusal("plot", kind))
+        self.assertIn("the run writes them at its end", self.refusal("plot", "profiles"))
         for kind in ("relation", "visible"):
             self.assertIn("a run of system: continuum has no box.", self.refusal("plot", kind))
 

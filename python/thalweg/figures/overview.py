@@ -1,13 +1,14 @@
 """Which figures a run calls for."""
 from thalweg import drawing, height_profiles
 from thalweg.errors import RunFolderError
-from thalweg.figures import fluid_profiles, reach, sizes, transport_rate
+from thalweg.figures import column, fluid_profiles, reach, sizes, transport_rate
 from thalweg.sizes import measured as measured_by_size
 
 
 def bed_figure(run, time=None):
     """The grains, coloured by speed, in front of the fluid's speed in the middle plane, from the frames nearest to each
     other in time (s)."""
+    drawing.refuse_column(run)
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
@@ -24,7 +25,10 @@ def side_view_of(run, time=None):
 
 
 def profiles_of(run):
-    """The function that draws the means over the height; None where the run has none yet."""
+    """The function that draws the means over the height, of a continuum its column; None where the run has none
+    yet."""
+    if run.system == "continuum":
+        return (lambda: column.figure_of(run)) if column.measured(run) else None
     if run.case.get("system") == "fluid":
         return (lambda: fluid_profiles.figure_of(run)) if fluid_profiles.measured(run) else None
     if height_profiles.has_grains(run) and height_profiles.measured(run):

@@ -29,7 +29,7 @@ from thalweg.units import units_of
 
 SCENE_WIDTH = 0.80   # share of the picture; the colour scales take the rest
 FILLED = 0.88        # share of the scene that the box may take, which leaves room for the title above it
-MOST_PIXELS = 4096   # along a side; software draws larger ones for minutes or without end
+MOST_PIXELS = 8192   # along a side; larger pictures take minutes, and very large ones never end
 
 
 @contextlib.contextmanager
@@ -171,6 +171,7 @@ def scale_bar(table, title, unit, place, font):
 
 def pictured(run, time):
     """The stored frames of grains and fluid that are nearest to a time (s) and to each other."""
+    drawing.refuse_column(run)
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)

@@ -8,7 +8,7 @@ import numpy as np
 from thalweg.errors import RunFolderError
 from thalweg.figures import fluid_profiles, overview, reach, sizes, transport_rate
 from thalweg.page import html
-from thalweg.page.figures import column_figure, series_figure
+from thalweg.page.figures import series_figure
 from thalweg.history import command_of, sessions_of, settings_in, warnings_of
 from thalweg.sizes import Sizes
 from thalweg.sizes import measured as measured_by_size
@@ -98,11 +98,10 @@ def pictures(run):
     if run.case.get("system") == "continuum":
         return ""
     name, draw = overview.side_view_of(run)
+    behind = ", in front of the flow in the middle plane" if len(run.fluid) else ""
     caption = {
-        "bed": (
-            "Side view of the last stored frame: the grains, coloured by speed, in front of the flow in the middle"
-            " plane."
-        ), "flow": "Speed of the fluid in the middle plane, in the last stored frame.",
+        "bed": f"Side view of the last stored frame: the grains, coloured by speed{behind}.",
+        "flow": "Speed of the fluid in the middle plane, in the last stored frame.",
     }[name]
     return html.section("Picture", attempt(draw, caption))
 
@@ -174,16 +173,10 @@ def reach_section(run):
 
 
 def profiles(run):
-    found = run.profiles
-    if "continuum" in found:
-        return html.section(
-            "Profiles",
-            attempt(
-                lambda: column_figure(run),
-                "The column at the end: solid fraction, velocities and stresses " "over the height.",
-            ),
-        )
     draw = overview.profiles_of(run)
+    if draw is not None and run.system == "continuum":
+        caption = "The column at the end: solid fraction, velocities and stresses over the height."
+        return html.section("Profiles", attempt(draw, caption))
     if draw is None and fluid_profiles.measured(run):
         def draw():
             return fluid_profiles.figure_of(run)
