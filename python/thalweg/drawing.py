@@ -135,8 +135,8 @@ def side_view_axes(run, time, bars):
 
 def flow_direction(run, from_y=-1.0):
     """Text after the label of the x axis: which way the fluid goes along x, as seen from a direction whose component
-    along y is from_y; none without a fluid, without anything that drives it along x, or where walls and gravity drive it
-    in opposite directions."""
+    along y is from_y; none without a fluid, without anything that drives it along x, or where walls and gravity drive
+    it in opposite directions."""
     fluid = run.case.get("fluid")
     if not fluid:
         return ""

@@ -79,8 +79,9 @@ def draw_profiles(wanted):
     def figure_of(run):
         draw = overview.profiles_of(run)
         if draw is None and run.system == "continuum":
-            raise RunFolderError(f"{run.folder / 'profiles.h5'}: there are no profiles of the column yet; the run writes "
-                                 "them at its end.")
+            raise RunFolderError(
+                f"{run.folder / 'profiles.h5'}: there are no profiles of the column yet; the run writes them at its end."
+            )
         if draw is None:
             raise RunFolderError(
                 f"{run.folder / 'profiles.h5'}: it has no means of grains or fluid yet (analysis.grain_profiles, "

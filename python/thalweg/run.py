@@ -205,8 +205,8 @@ class Run:
 
     def velocities_of_faces(self):
         """Velocities (m/s, along x, y, z) of the walls that move and of the fluid at inlets."""
-        boundaries = self.section("domain").get("boundaries", {}).values()
-        return [np.array(face["velocity"], float) for face in boundaries if isinstance(face, dict) and "velocity" in face]
+        faces = self.section("domain").get("boundaries", {}).values()
+        return [np.array(face["velocity"], float) for face in faces if isinstance(face, dict) and "velocity" in face]
 
     @property
     def periodic(self):

@@ -25,8 +25,10 @@ def naming_damage(read):
         try:
             return read(path)
         except (xml.ParseError, zlib.error, ValueError, TypeError, AttributeError, LookupError, StopIteration):
-            raise RunFolderError(f"{path} is damaged or was not written to its end; a restart of the run from before this "
-                                 "frame writes it again.") from None
+            raise RunFolderError(
+                f"{path} is damaged or was not written to its end; a restart of the run from before this frame writes it"
+                " again."
+            ) from None
     return reading
 
 
