@@ -44,6 +44,8 @@ def refuse_one_name(wanted):
 def draw_of_each_run(wanted, figure_of):
     """figure_of(run): name and function of its figure, which goes to --out or into the folder of the run."""
     refuse_one_name(wanted)
+    if wanted.out:
+        refuse_suffix(wanted.out)
     for folder in wanted.runs:
         name, draw = figure_of(Run(folder))
         yield saved(draw(), wanted.out or folder / f"{name}.png")
@@ -102,6 +104,7 @@ def draw_reach(wanted):
 
 
 def draw_relation(wanted):
+    refuse_suffix(wanted.out)
     yield saved(
         module("thalweg.figures.relation").draw(wanted.runs, wanted.start, wanted.stop, wanted.surface, wanted.table),
         wanted.out,
@@ -109,12 +112,14 @@ def draw_relation(wanted):
 
 
 def draw_visible(wanted):
+    refuse_suffix(wanted.out)
     start, stop = -math.inf if wanted.start is None else wanted.start, math.inf if wanted.stop is None else wanted.stop
     visible = module("thalweg.figures.visible")
     yield saved(visible.figure_of([Run(folder) for folder in wanted.runs], start, stop, wanted.frames), wanted.out)
 
 
 def draw_two_phases(wanted):
+    refuse_suffix(wanted.out)
     yield saved(module("thalweg.figures.two_phases").draw(wanted.run, wanted.continuum), wanted.out)
 
 
@@ -244,8 +249,6 @@ def add_film(film):
 
 
 def plot(wanted):
-    if wanted.out and wanted.kind not in ("all", "film", "picture"):   # which have names of their own
-        refuse_suffix(wanted.out)
     for path in wanted.draw(wanted):
         print(path, flush=True)
     return 0

@@ -16,6 +16,7 @@ from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import mean_with_error
 from thalweg.transport import column_of, sentence_of_column, state_of_column, transport
+from thalweg.units import units_of
 from thalweg.visible_profiles import visible_profiles
 
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
@@ -246,7 +247,8 @@ def report_of(run, start=None, stop=None):
     """Report of a run between two times (s); see window() for what counts where none are given."""
     report = Report(run, start, stop)
     times = f"{report.stop:g}" if run.system == "continuum" else f"{report.start:g} to {report.stop:g}"
-    report.say("run", f"{run.name}: {times} s of {end_of(run):g} s")
+    second = units_of(run).named("s")
+    report.say("run", f"{run.name}: {times} {second} of {end_of(run):g} {second}")
     if (start is not None and start < report.start) or (stop is not None and stop > report.stop):
         report.say("window", "shorter than wanted: series.csv has no rows of the rest")
     if run.system == "continuum":

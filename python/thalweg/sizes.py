@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from thalweg.errors import RunFolderError
+from thalweg.units import units_of
 
 
 class Sizes:
-    """The size classes of a run, the finest first, in SI units."""
-    HEADINGS = ("sizes [mm]", "bed", "surface", "load", "q*", "error", "W*", "moving grains")
+    """The size classes of a run, the finest first, in the units of its case."""
 
     def __init__(self, run):
         found = run.fractional_transport
@@ -23,6 +23,11 @@ class Sizes:
             "q_star_error"
         )  # by the surface; None without a fluid
         self.bed_d50, self.surface_d50, self.load_d50 = (float(size) for size in found["d50"])
+
+    @property
+    def headings(self):
+        """Of rows()."""
+        return (f"sizes [{units_of(self.run).length}]", "bed", "surface", "load", "q*", "error", "W*", "moving grains")
 
     @property
     def armouring_ratio(self):
@@ -59,24 +64,28 @@ class Sizes:
         return np.concatenate([[0.0], np.cumsum(share)])
 
     def sentence(self):
+        units = units_of(self.run)
+
+        def text(size):
+            return f"{units.per_length * size:.4g} {units.length}"
         load = (
-            f"{1e3 * self.load_d50:.4g} mm"
+            text(self.load_d50)
             if math.isfinite(self.load_d50)
             else "not known, as nothing moves downstream on the whole"
         )
         return (
-            f"d50 of the bed {1e3 * self.bed_d50:.4g} mm, of its surface {1e3 * self.surface_d50:.4g} mm, of the load"
-            f" {load}; armouring ratio {self.armouring_ratio:.3g}"
+            f"d50 of the bed {text(self.bed_d50)}, of its surface {text(self.surface_d50)}, of the load {load}; armouring"
+            f" ratio {self.armouring_ratio:.3g}"
         )
 
     def rows(self):
-        """A row of texts for each class, under HEADINGS."""
+        """A row of texts for each class, under the headings."""
         def text(values, c, digits=3):
             return "" if values is None or not math.isfinite(values[c]) else f"{values[c]:.{digits}g}"
-        w_star = self.w_star()
+        w_star, edges = self.w_star(), units_of(self.run).per_length * self.edges
         return [
             (
-                f"{1e3 * self.edges[c]:.3g} to {1e3 * self.edges[c + 1]:.3g}", text(self.bed_share, c),
+                f"{edges[c]:.3g} to {edges[c + 1]:.3g}", text(self.bed_share, c),
                 text(self.surface_share, c), text(self.load_share, c), text(self.q_star, c),
                 text(self.q_star_error, c, 2), text(w_star, c), text(self.moving_grains, c),
             )

@@ -287,7 +287,7 @@ class Plot(unittest.TestCase):
 
     def test_a_figure_has_a_name_that_can_be_drawn(self):
         for name in ("a.txt", "a"):
-            for kind in ("side", "q"):
+            for kind in ("side", "q", "relation", "visible", "two_phases"):
                 done = self.plot("--out", self.folder / name, kind=kind)
                 self.assertEqual(done.returncode, 2)
                 self.assertIn(f"{name}: a figure ends in ", done.stderr)

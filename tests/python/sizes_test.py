@@ -46,6 +46,14 @@ class SizesTest(made_up.MadeUpFolder):
     def run_(self):
         return thalweg.Run(self.folder)
 
+    def test_in_grain_units(self):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "model_fluid: {units: grain}\n")
+        self.write(edges=[0.8, 1.0, 1.2])
+        sizes = Sizes(self.run_())
+        self.assertEqual((sizes.headings[0], sizes.rows()[0][0]), ("sizes [D]", "0.8 to 1"))
+        self.assertIn("d50 of the bed 0.004 D, of its surface 0.006 D, of the load 0.003 D", sizes.sentence())
+
     def test_scales(self):
         sizes = Sizes(self.run_())
         self.assertAlmostEqual(sizes.armouring_ratio, 1.5)

@@ -148,7 +148,7 @@ def size_section(run):
     found = Sizes(run)
     return html.section(
         "Transport by size class", attempt(lambda: sizes.figure_of(run), caption),
-        html.paragraph(found.sentence() + "."), html.table(found.rows(), found.HEADINGS, range(1, len(found.HEADINGS))),
+        html.paragraph(found.sentence() + "."), html.table(found.rows(), found.headings, range(1, len(found.headings))),
     )
 
 
@@ -165,8 +165,9 @@ def reach_section(run):
         parts.append(
             html.paragraph(
                 f"{number(found['arrived_grains'])} grains came in and {number(found['left_grains'])} left; the mean"
-                f" residence time of those that did both is {number(found['residence_time_mean'], 3)} s. The balance of"
-                f" the bins is out by {number(found['balance_residual'])} grains."
+                f" residence time of those that did both is {number(found['residence_time_mean'], 3)}"
+                f" {units_of(run).named('s')}. The balance of the bins is out by {number(found['balance_residual'])}"
+                " grains."
             )
         )
     return html.section("Along the reach", attempt(lambda: reach.figure_of(run), caption), *parts)
