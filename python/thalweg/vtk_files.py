@@ -53,7 +53,10 @@ class Appended:
         word = self.word.itemsize
         if not self.compressed:
             size = int(np.frombuffer(self._piece(offset, word)[0], self.word)[0])
-            return self._piece(offset, word + size)[0][word:]
+            values = self._piece(offset, word + size)[0][word:]
+            if len(values) < size:
+                raise ValueError("an array ends too soon")
+            return values
         blocks, block, last = (int(n) for n in np.frombuffer(self._piece(offset, 3 * word)[0], self.word))
         header, start = self._piece(offset, (3 + blocks) * word)
         sizes = np.frombuffer(header, self.word)[3:].astype(int)

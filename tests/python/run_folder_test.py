@@ -76,6 +76,12 @@ class VtkFiles(made_up.MadeUpFolder):
                 with self.assertRaisesRegex(thalweg.RunFolderError, f"{path.name} is damaged"):
                     read(path)
             path.write_bytes(whole)
+        made_up.write_points(points, np.ones((100, 3)), {"id": np.arange(100)}, uncompressed)
+        whole = points.read_bytes()
+        for rest in range(600, 624):   # bytes that are missing, in the middle of the positions
+            points.write_bytes(whole[:-rest])
+            with self.assertRaisesRegex(thalweg.RunFolderError, "points.vtp is damaged"):
+                read_points(points)
 
     def test_an_image_and_its_pieces(self):
         generator = np.random.default_rng(2)
