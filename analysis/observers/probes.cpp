@@ -94,8 +94,8 @@ bool Probes::load(ArchiveReader& archive) {
 }
 
 static void describe(SectionVisitor& visit, ProbeLine& line) {
-  visit.vec3("from", line.from, {.unit = "m"});
-  visit.vec3("to", line.to, {.unit = "m"});
+  visit.vec3("from", line.from, {.unit = "m", .meaning = "first point"});
+  visit.vec3("to", line.to, {.unit = "m", .meaning = "last point"});
   visit.integer("points", line.points, {.meaning = "at equal distances, both ends included", .at_least = 2});
 }
 

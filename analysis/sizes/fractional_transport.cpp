@@ -316,7 +316,7 @@ void describe(SectionVisitor& visit, FractionalTransportKeys& keys) {
                    .meaning = "of the size classes, rising, covering all free grains; default: the sieves of the case, "
                               "a class for each of up to ten sizes, or classes of 1/2 phi",
                    .above = 0.0,
-                   .example = 4e-3});
+                   .examples = {2e-3, 4e-3, 8e-3}});
   describe_moving_speed(visit, keys.moving_speed);
   if (!visit.reading() || keys.edges.empty()) return;
   visit.require(keys.edges.size() >= 2 && keys.edges.size() <= most_classes + 1, "edges",

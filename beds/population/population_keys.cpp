@@ -23,7 +23,10 @@ static void describe(SectionVisitor& visit, BodyKeys& body) {
   visit.real("volume", body.volume, {.unit = "m^3", .meaning = "of the body", .required = true, .above = 0.0});
   visit.vec3("centre", body.centre, {.unit = "m", .meaning = "in the frame of the spheres", .required = true});
   visit.real_list("inertia", body.inertia,
-                  {.unit = "m^5", .meaning = "xx, yy, zz, xy, xz, yz about the centre, at 1 kg/m^3", .required = true});
+                  {.unit = "m^5",
+                   .meaning = "xx, yy, zz, xy, xz, yz about the centre, at 1 kg/m^3",
+                   .required = true,
+                   .examples = {0.1, 0.1, 0.1, 0.0, 0.0, 0.0}});
   visit.require(!visit.reading() || body.inertia.size() == 6, "inertia",
                 "a symmetric tensor has six components; give xx, yy, zz, xy, xz, yz in m^5");
 }

@@ -48,8 +48,8 @@ static void describe(SectionVisitor& visit, RecirculationKeys& recirculation) {
   visit.real("delay", recirculation.delay, {.unit = "s", .meaning = "until they come in again", .at_least = 0.0});
   describe_entrance(
       visit, recirculation.region, recirculation.velocity, recirculation.seed,
-      "with which they come in; default: their own if they come in at the height at which they left, else "
-      "as of a supply");
+      "with which they come in; default: the one they had if they come in at the height at which they left, "
+      "else as of a supply");
 }
 
 void describe(SectionVisitor& visit, SinkKeys& sink) {

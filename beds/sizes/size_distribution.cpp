@@ -50,13 +50,17 @@ static bool rise(const std::vector<double>& sizes) {
 
 static void describe(SectionVisitor& visit, SieveKeys& sieve) {
   visit.real_list("sizes", sieve.sizes,
-                  {.unit = "m", .meaning = "of the sieves, rising", .required = true, .above = 0.0, .example = 4e-3});
+                  {.unit = "m",
+                   .meaning = "of the sieves, rising",
+                   .required = true,
+                   .above = 0.0,
+                   .examples = {2e-3, 4e-3, 8e-3}});
   visit.real_list("finer", sieve.finer,
                   {.meaning = "share of the mass that passes each sieve, from 0 to 1; straight over ln d between them",
                    .required = true,
                    .at_least = 0.0,
                    .at_most = 1.0,
-                   .example = 0.0});
+                   .examples = {0.0, 0.4, 1.0}});
   if (!visit.reading()) return;
   visit.require(sieve.sizes.size() >= 2 && rise(sieve.sizes), "sizes",
                 "give at least two sieves in m, each at least 0.1 % wider than the one before");
@@ -104,7 +108,7 @@ void describe(SectionVisitor& visit, SizesKeys& sizes, double& diameter) {
   visit.real("maximum", sizes.maximum,
              {.unit = "m", .meaning = "nothing coarser; with d84 by default d84^2/d50", .above = 0.0, .example = 7e-3});
   visit.real_list("sizes", sizes.sizes,
-                  {.unit = "m", .meaning = "a few sizes, in place of a value", .above = 0.0, .example = 5e-3});
+                  {.unit = "m", .meaning = "a few sizes, in place of a value", .above = 0.0, .examples = {4e-3, 5e-3}});
   visit.real_list(
       "fractions", sizes.fractions,
       {.meaning = "of the number of grains, one for each size", .above = 0.0, .at_most = 1.0, .example = 0.5});

@@ -41,7 +41,8 @@ struct RealKey {
   std::optional<double> at_most = std::nullopt;
   std::optional<double> example = std::nullopt;  // shown in errors and, for an optional value, in the documentation
   OnlyIf only_if = {};
-  int fewest_numbers = 3;  // of three: fewer where the last may be left out, as it follows from other keys
+  std::vector<double> examples = {};  // of a list, in place of two like `example`
+  int fewest_numbers = 3;             // of three: fewer where the last may be left out, as it follows from other keys
 };
 
 struct IntegerKey {

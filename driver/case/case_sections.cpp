@@ -247,7 +247,7 @@ void describe(SectionVisitor& visit, Case& c) {
   const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
   std::optional<std::string> preset;  // has been laid beneath the case before it is read
   visit.text("preset", preset,
-             {.meaning = fmt::format("settings by name, beneath those of the case, which win: {}; `thalweg defaults "
+             {.meaning = fmt::format("named set of defaults, which keys of the case override: {}; `thalweg defaults "
                                      "zhang2022` shows them",
                                      preset_names()),
               .example = "zhang2022"});

@@ -117,8 +117,8 @@ void SectionWriter::value_of(const std::string& key, std::vector<std::int64_t>& 
 
 void SectionWriter::value_of(const std::string& key, std::vector<double>& values, const RealKey& about) {
   std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(shortest(value));
-  if (values.empty()) texts.assign(2, shortest(about.example.value_or(1.0)));
+  for (const double value : values.empty() ? about.examples : values) texts.push_back(shortest(value));
+  if (texts.empty()) texts.assign(2, shortest(about.example.value_or(1.0)));
   put(!values.empty(), key, fmt::format("[{}]", fmt::join(texts, ", ")), comment_of(about));
 }
 
