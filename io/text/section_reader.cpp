@@ -226,9 +226,12 @@ void SectionReader::value_of(const std::string& key, std::vector<std::int64_t>& 
 }
 
 void SectionReader::value_of(const std::string& key, std::vector<double>& values, const RealKey& about) {
-  const double example = about.example.value_or(1.0);
-  const std::string expectation = fmt::format("a list of numbers{}{}, for example [{}, {}]", unit_of(about),
-                                              range_of(about), shortest(example), shortest(example));
+  const double example = about.examples.empty() ? about.example.value_or(1.0) : about.examples.front();
+  std::vector<std::string> examples;
+  for (const double each : about.examples) examples.push_back(shortest(each));
+  if (examples.empty()) examples.assign(2, shortest(example));
+  const std::string expectation = fmt::format("a list of numbers{}{}, for example [{}]", unit_of(about),
+                                              range_of(about), fmt::join(examples, ", "));
   const YamlNode* node = look_up(key, about.required, expectation);
   if (!node) return;
   if (node->kind != YamlNode::Kind::list || node->items.empty()) fail(*node, key, "expected " + expectation);

@@ -76,6 +76,14 @@ class Check(ProgramTest):
             self.assertRegex(ran.stderr, r"use at least \d+ such nodes")
         self.assertEqual(files_below(self.folder), ["case.yaml"])
 
+    def test_solve_prints_keys_and_json_figures_but_not_both(self):
+        self.assert_refused("check", self.case, "--solve", "--json", words=["--solve excludes --json"])
+
+    def test_rows_of_a_column_come_with_its_step(self):
+        case = Path(__file__).resolve().parents[3] / "cases/continuum/case.yaml"
+        checked = self.run_well("check", case, "--set", "output.series=null", "--set", "run.time_step=2.5").stdout
+        self.assertIn("no warning", checked)
+
     def test_a_box_in_millimetres_of_cells_in_metres(self):
         """The grains and cells of a case in m, and its box in mm: 2e11 cells, and no advice to make them coarser."""
         box = ("--set", "domain.size=[88, 44]")
