@@ -4,6 +4,7 @@ import numpy as np
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import at_equal_intervals
+from thalweg.obstacles import obstacles
 from thalweg.run import DRAGGING
 from thalweg.side_view import static_surface
 
@@ -93,12 +94,17 @@ def rows_between(run, start, stop):
     return rows[at_equal_intervals(time[rows])]
 
 
+def is_obstructed(run):
+    """Whether solids, or grains that are obstacles, take a part of the force that drives the flow."""
+    return bool(run.case.get("solids")) or (len(run.grains) > 0 and bool(obstacles(run, run.grains[0]).any()))
+
+
 def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
     """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and
-    slope, or by hydraulic radius beside side walls; else, and where solids stand in the flow, the mean between two
+    slope, or by hydraulic radius beside side walls; else, and where obstacles stand in the flow, the mean between two
     times (s) of what the run measured for the surface by solid fraction, and for another one as much more as its
     hydraulic radius is larger. RunFolderError where that cannot be said, because the top drags on the flow as well."""
-    if run.driven_by_slope and not run.case.get("solids"):
+    if run.driven_by_slope and not is_obstructed(run):
         return shields_of(
             run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
         )

@@ -139,6 +139,9 @@ class Layers(made_up.MadeUpFolder):
         layers = profiles["z"] < 9.5 * D
         np.testing.assert_allclose(profiles["solid_fraction"][layers][1:], right, rtol=2e-3)
         self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+        # It takes a part of the force of the slope, which only the run knows.
+        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n")
+        self.assertAlmostEqual(bed.shields_number(run, 10 * D), 0.08, 12)
 
     def test_solids_that_stand_still_take_their_room(self):
         # A block over a quarter of the length, as high as half of the box, and another one that moves.
