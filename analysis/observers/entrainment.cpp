@@ -17,7 +17,9 @@ Entrainment::Entrainment(MPI_Comm communicator, const PeriodicBox& box, Entrainm
     : communicator_(communicator),
       box_(box),
       settings_(std::move(settings)),
-      layers_(communicator, box, settings_.window, 0.0, settings_.obstacles) {}
+      layers_(communicator, box, settings_.window, 0.0, settings_.obstacles) {
+  settings_.obstacles = {};  // the layers have what they need of them, and surfaces may be large
+}
 
 void Entrainment::observe(const Snapshot& snapshot) {
   if (snapshot.step <= seen_step_ || !counts_from(settings_.from, snapshot.time)) return;

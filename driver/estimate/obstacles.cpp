@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -109,9 +110,11 @@ std::function<std::vector<double>(int layers)> solids_below(const Case& c) {
   for (std::size_t n = c.solids.size(); n-- > 0;)
     if (c.solids[n].motion) standing.erase(standing.begin() + static_cast<std::ptrdiff_t>(n));
   if (standing.empty() || c.disks) return {};
-  return [surfaces = std::move(standing), box = grain_box(c)](int layers) {
+  // Shared by the copies of the function.
+  return [surfaces = std::make_shared<const std::vector<TriangleMesh>>(std::move(standing)),
+          box = grain_box(c)](int layers) {
     std::vector<double> below(static_cast<std::size_t>(layers) + 1, 0.0);
-    for (const TriangleMesh& surface : surfaces) {
+    for (const TriangleMesh& surface : *surfaces) {
       const std::vector<double> one = volume_below(surface, box, layers);
       for (std::size_t k = 0; k < below.size(); ++k) below[k] += one[k];
     }
