@@ -80,7 +80,7 @@ double slope_for(const FlowNumbers& flow, double shields) {
 }
 
 double settled_height(const Case& c) {
-  if (gravity_vector(c.gravity).z() == 0.0) return 0.0;
+  if (c.grains.empty() || gravity_vector(c.gravity).z() == 0.0) return 0.0;
   const Obstacles obstacles = obstacles_of(c);
   const SolidsBelow solids = solids_below(c);
   if (solids || !obstacles.spheres.empty()) return settled_height(c, obstacles, solids);

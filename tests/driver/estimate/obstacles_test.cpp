@@ -105,6 +105,9 @@ TEST(Obstacles, SolidsTakeTheirRoomInTheBed) {
   EXPECT_EQ(settled_height(moving), settled_height(testing::read_text(bed_with(""))));
   EXPECT_NEAR(solids_below(standing)(1).back(), half * 1e-9, 0.01 * half * 1e-9);
   EXPECT_FALSE(solids_below(moving));
+  const Case water = testing::read_text(defaults_yaml("fluid"));  // with a sphere
+  EXPECT_TRUE(solids_below(water));
+  EXPECT_EQ(settled_height(water), 0.0);
 }
 
 // Through a periodic face, and not through a wall; free grains are never obstacles.
