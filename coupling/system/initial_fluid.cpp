@@ -9,9 +9,8 @@
 namespace thalweg::coupling {
 
 static void describe(SectionVisitor& visit, PerturbationKeys& perturbation) {
-  visit.real(
-      "amplitude", perturbation.amplitude,
-      {.meaning = "r.m.s. of a velocity component far from walls, over shear_velocity", .above = 0.0});
+  visit.real("amplitude", perturbation.amplitude,
+             {.meaning = "r.m.s. of a velocity component far from walls, over shear_velocity", .above = 0.0});
   visit.integer("seed", perturbation.seed, {.meaning = "seed of the random eddies", .at_least = 0});
 }
 

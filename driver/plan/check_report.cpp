@@ -279,10 +279,12 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
 
 std::string verdict_text(const Case& c, std::size_t warnings) {
   if (warnings > 0)
-    return fmt::format("{} warning{}, the gravest first: correct the case before you rely on its results (check --solve)",
-                       warnings, warnings == 1 ? "" : "s");
+    return fmt::format(
+        "{} warning{}, the gravest first: correct the case before you rely on its results (check --solve)", warnings,
+        warnings == 1 ? "" : "s");
   const std::string drag = drag_text(c);
-  return "no warning" + (drag.empty() ? std::string() : "; error left at these cells: drag " + drag + " (docs/accuracy.md)");
+  return "no warning" +
+         (drag.empty() ? std::string() : "; error left at these cells: drag " + drag + " (docs/accuracy.md)");
 }
 
 using LightestGrains = std::vector<dem::LightestGrain>;  // by material
