@@ -50,12 +50,13 @@ bool BedLayers::are_the_bed(const Snapshot& snapshot) const {
   return !obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count;
 }
 
-double BedLayers::force_on_obstacles(const Snapshot& snapshot) const {
+double BedLayers::force_on_obstacles(const Snapshot& snapshot, const Bed& bed) const {
   if (obstacles_.empty() || are_the_bed(snapshot)) return 0.0;
   const GrainView& grains = snapshot.grains;
   return reproducible_sums_by_bin(communicator_, 1, 1, [&](const TermTaker& take) {
     for (std::size_t i = 0; i < grains.id.size(); ++i)
-      if (is_obstacle(grains.id[i])) take(0, std::array{grains.fluid_force[i].x()});
+      if (is_obstacle(grains.id[i]) && grains.position[i].z() > bed.height)
+        take(0, std::array{grains.fluid_force[i].x()});
   })[0];
 }
 

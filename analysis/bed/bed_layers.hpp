@@ -28,9 +28,9 @@ public:
   };
   Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
   double width() const { return width_; }   // m, of the bed
-  // N, along x, of the fluid on the spheres that are obstacles; 0 where they are the bed. The same bits on any ranks;
-  // collective.
-  double force_on_obstacles(const Snapshot& snapshot) const;
+  // N, along x, of the fluid on the spheres that are obstacles and have their centres above the bed; 0 where they are
+  // the bed. The same bits on any ranks; collective.
+  double force_on_obstacles(const Snapshot& snapshot, const Bed& bed) const;
 
 private:
   bool is_obstacle(GlobalId id) const;

@@ -56,7 +56,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
 void BedSurface::observe(const Snapshot& snapshot) {
   // A restarted run measures the state of its checkpoint once more.
   const bool again = snapshot.step <= seen_step_;
-  measure(snapshot);
+  measure(snapshot, again);
   if (again) return;
   seen_step_ = snapshot.step;
   if (pixels_.look(snapshot) && counts_from(keys_.from, pixels_.begun())) {
@@ -74,16 +74,28 @@ void BedSurface::observe(const Snapshot& snapshot) {
   sums_[n] += bulk_;
 }
 
-void BedSurface::measure(const Snapshot& snapshot) {
+// From the half planes of cells above the bed.
+double BedSurface::taken_by_solids(const Snapshot& snapshot, const FluidSource::Drive& drive) const {
+  if (!flow_->has_solids || snapshot.momentum == nullptr) return drive.on_solids.x();
+  const std::vector<Vec3>& by_height = snapshot.momentum->on_solids;
+  double taken = 0.0;
+  for (std::size_t h = 0; h < by_height.size(); ++h)
+    if (static_cast<double>(h) * box_.size.z() > bed_height_ * static_cast<double>(by_height.size() - 1))
+      taken += by_height[h].x();
+  return taken;
+}
+
+void BedSurface::measure(const Snapshot& snapshot, bool again) {
   const BedLayers::Bed bed = layers_.bed(snapshot);
   bulk_ = bed.solid_fraction;
   bed_height_ = bed.height;
   if (!flow_ || flow_->shields_stress <= 0.0) return;
+  if (again && needs_momentum() && snapshot.momentum == nullptr) return;  // that of the checkpoint
   bed_stress_ = flow_->driving_stress * hydraulic_radius();
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
   const double plan = box_.size.x() * box_.size.y(), width = layers_.width();
-  const double taken = drive.on_top.x() + drive.on_solids.x() + layers_.force_on_obstacles(snapshot);
+  const double taken = drive.on_top.x() + taken_by_solids(snapshot, drive) + layers_.force_on_obstacles(snapshot, bed);
   const double left = drive.body_force.x() * (flow_depth() - bed.obstacles_above / plan) - taken / plan;
   bed_stress_ = left * width / (width + flow_->side_walls * flow_depth());
 }
@@ -216,6 +228,7 @@ std::optional<BedFlow> bed_flow(const RunContext& run) {
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
   flow.driving_stress = run.fluid->density * run.gravity.x();
+  flow.has_solids = run.fluid->has_solids;
   flow.measured =
       run.fluid->steered || run.fluid->top_drags || run.fluid->has_solids || !run.grains->obstacles.spheres.empty();
   return flow;

@@ -10,7 +10,8 @@
 //
 // With a controlled mean velocity, f is the body force of the moment. A top of the box that drives or drags the flow
 // adds its measured stress tau_top (Pa, on the fluid, along x). Solids and other obstacles take the measured force F_o
-// from the flow, and fill the volume V_o above the bed:
+// from the flow above the bed, and fill the volume V_o there; what they take below, as a solid floor does, is the
+// bed's:
 //
 //   tau_b = [f (H - V_o/A) + tau_top - F_o/A] W / (W + n H)                       A: plan of the box
 #pragma once
@@ -54,6 +55,7 @@ struct BedFlow {
   double driving_stress = 0.0;  // Pa/m: rho_f g_x
   double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
   bool measured = false;        // the forces are those of the moment (FluidSource::drive())
+  bool has_solids = false;      // whose force by height is needed (Snapshot::momentum); without, all counts as above
 };
 
 class BedSurface : public Observer {
@@ -65,6 +67,7 @@ public:
 
   std::string name() const override { return "bed_surface"; }
   double every() const override { return keys_.every; }
+  bool needs_momentum() const override { return flow_ && flow_->shields_stress > 0.0 && flow_->has_solids; }
   void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
 
   // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
@@ -85,9 +88,10 @@ public:
   bool load(ArchiveReader& archive) override;
 
 private:
-  void measure(const Snapshot& snapshot);
-  double flow_depth() const;        // m
-  double hydraulic_radius() const;  // m
+  void measure(const Snapshot& snapshot, bool again);
+  double taken_by_solids(const Snapshot& snapshot, const FluidSource::Drive& drive) const;  // N, along x, above the bed
+  double flow_depth() const;                                                                // m
+  double hydraulic_radius() const;                                                          // m
   SavedSettings settings() const;
 
   MPI_Comm communicator_;

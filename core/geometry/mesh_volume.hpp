@@ -1,7 +1,7 @@
 // The volume of a box that a closed surface encloses below a height:
 //
-//   O(z) = integral over the surface below z of (z' - z) n_z dA        by the divergence theorem: the cut at z adds
-//   nothing
+//   O(z) = integral over the surface below z of (z' - z) n_z dA           (divergence theorem; the cut at z adds
+//   nothing)
 #pragma once
 
 #include "core/geometry/periodic_box.hpp"

@@ -13,8 +13,8 @@ namespace thalweg::driver {
 
 // Bed of the present state, as analysis.bed_surface measures it: bed_height (m), porosity (1, of the lower half of the
 // bed), and under a fluid flow_depth and hydraulic_radius (m) and, in a driven flow, bed_stress (Pa) and
-// shields_number; only the first two if the grains are too loose to be a bed. Empty without grains, and if z is
-// periodic. Collective; the same on every rank.
+// shields_number (none beside solids); only the first two if the grains are too loose to be a bed. Empty without
+// grains, and if z is periodic. Collective; the same on every rank.
 std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const System& system);
 
 // One line of text; empty for an empty list.

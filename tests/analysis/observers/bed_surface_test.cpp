@@ -209,8 +209,21 @@ TEST(BedSurface, LeavesOutWhatSolidsFillAndTake) {
   surface.observe(snapshot);
   EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 10.0 * d, 1e-9);
   EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
-  const double left = 300.0 * 0.875 * depth - taken / plan;
-  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), left * 8.0 * d / (8.0 * d + depth), 1e-9);
+  const auto expect_stress = [&](const BedSurface& of, double force) {
+    const double left = 300.0 * 0.875 * depth - force / plan;
+    EXPECT_NEAR(value_of(of.diagnostics(), "bed_stress"), left * 8.0 * d / (8.0 * d + depth), 1e-9);
+  };
+  expect_stress(surface, taken);
+  // Of what it takes by height, all above the bed: not what a floor of the same solid takes beneath it.
+  MomentumBudget budget;
+  budget.on_solids.assign(2 * 64 + 1, Vec3::Zero());
+  for (const int half_cells : {7, 40, 41, 120})  // the bed ends at 20 cells
+    budget.on_solids[static_cast<std::size_t>(half_cells)] = Vec3(0.1 * taken * half_cells, 5.0, 6.0);
+  BedSurface by_height(world, spheres.box(), keys(), d, BedFlow{1, 1e9, 80.0, true, true}, 0.0, pier);
+  EXPECT_TRUE(by_height.needs_momentum());
+  snapshot.momentum = &budget;
+  by_height.observe(snapshot);
+  expect_stress(by_height, 0.1 * taken * (41 + 120));
 }
 
 // The same of spheres that are obstacles: an eighth of the grains of a row stands in the flow and takes 0.7 N.
