@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -27,8 +26,6 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
   const double here = room(k) - room(k - 1), left = volume - room(k - 1);
   return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
 }
-
-using SolidsBelow = std::function<std::vector<double>(int layers)>;
 
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }

@@ -187,7 +187,7 @@ double time_to_adapt(const FlowEstimate& flow, const Channel& channel) {
 FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
   if (!c.fluid.mean_velocity || c.fluid.mean_velocity->velocity == 0.0) return {};
   const Vec3 size = c.domain.size;
-  const auto solids = solids_below(c);
+  const SolidsBelow solids = solids_below(c);
   const double water = size.x() * size.y() * size.z() - solid_volume(c) - (solids ? solids(1).back() : 0.0);
   const double mean = std::abs(c.fluid.mean_velocity->velocity) * water / (size.x() * size.y() * channel.depth);
   FlowEstimate flow = flow_of_discharge(mean, FlowCause::mean_velocity, channel);

@@ -105,11 +105,12 @@ Obstacles obstacles_of(const Case& c) {
   return found;
 }
 
-std::function<std::vector<double>(int layers)> solids_below(const Case& c) {
+SolidsBelow solids_below(const Case& c) {
+  const auto moves = [](const SolidCase& solid) { return solid.motion.has_value(); };
+  if (c.disks || std::all_of(c.solids.begin(), c.solids.end(), moves)) return {};
   std::vector<TriangleMesh> standing = solid_surfaces(c, 0.0);
   for (std::size_t n = c.solids.size(); n-- > 0;)
-    if (c.solids[n].motion) standing.erase(standing.begin() + static_cast<std::ptrdiff_t>(n));
-  if (standing.empty() || c.disks) return {};
+    if (moves(c.solids[n])) standing.erase(standing.begin() + static_cast<std::ptrdiff_t>(n));
   // Shared by the copies of the function.
   return [surfaces = std::make_shared<const std::vector<TriangleMesh>>(std::move(standing)),
           box = grain_box(c)](int layers) {

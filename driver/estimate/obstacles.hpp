@@ -24,7 +24,8 @@ Obstacles obstacles_of(const Case& c);
 
 // Volume (m^3) of the solids that stand still below layers + 1 heights from the floor of the box to its top, as
 // analysis::BedObstacles has it; places where two overlap count twice. Empty: there are none.
-std::function<std::vector<double>(int layers)> solids_below(const Case& c);
+using SolidsBelow = std::function<std::vector<double>(int layers)>;
+SolidsBelow solids_below(const Case& c);
 
 // m^3, of all grains, with overlaps counted once.
 double solid_volume(const Case& c);
