@@ -113,14 +113,7 @@ SolidsBelow solids_below(const Case& c) {
     if (moves(c.solids[n])) standing.erase(standing.begin() + static_cast<std::ptrdiff_t>(n));
   // Shared by the copies of the function.
   return [surfaces = std::make_shared<const std::vector<TriangleMesh>>(std::move(standing)),
-          box = grain_box(c)](int layers) {
-    std::vector<double> below(static_cast<std::size_t>(layers) + 1, 0.0);
-    for (const TriangleMesh& surface : *surfaces) {
-      const std::vector<double> one = volume_below(surface, box, layers);
-      for (std::size_t k = 0; k < below.size(); ++k) below[k] += one[k];
-    }
-    return below;
-  };
+          box = grain_box(c)](int layers) { return volume_below(*surfaces, box, layers); };
 }
 
 double solid_volume(const Case& c) {

@@ -8,6 +8,8 @@ what is left, in the room that they leave.
 """
 import numpy as np
 
+from thalweg.mesh_volume import volumes_in_layers
+
 MERGED, AS_LARGE_AGAIN = 0.05, 2.0   # diameters of the smaller; times the largest free grain
 ROWS_A_RADIUS = 20
 
@@ -76,24 +78,11 @@ def union_in_layers(run, edges, position, radius):
     return volumes
 
 
-def mesh_below(points, triangles, height):
-    """m^3 that a closed surface encloses below a height: the sum over its triangles of the integral of min(z - height, 0)
-    over their plan, twice its area times the second divided difference of min(z - height, 0)^3/6 over the corners."""
-    corners = points[triangles]
-    edge, other = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
-    plan = 0.5 * (edge[:, 0] * other[:, 1] - edge[:, 1] * other[:, 0])
-    z = np.sort(corners[:, :, 2], axis=1)
-    z = z + 1e-4 * np.ptp(points[:, 2]) * np.array([-1.0, 0.0, 1.0])   # corners of one height
-    cubes = np.minimum(z - height, 0.0)**3 / 6.0
-    first, second = ((cubes[:, n + 1] - cubes[:, n]) / (z[:, n + 1] - z[:, n]) for n in (0, 1))
-    return np.sum(2.0 * plan * (second - first) / (z[:, 2] - z[:, 0]))
-
-
 def solids_in_layers(run, edges):
-    """m^3 between one edge (m) and the next of the solids that stand still, to the parts beyond walls as well."""
+    """m^3 between one edge (m) and the next of the solids that stand still."""
     still = [n for n, solid in enumerate(run.case.get("solids") or ()) if not solid.get("motion")]
     if not still or run.periodic[2] or run.case.get("disks") or not len(run.solids):
         return np.zeros(len(edges) - 1)
     surface = run.solids[0]
     triangles = surface.triangles[np.isin(surface.solid, still)]
-    return np.diff([mesh_below(surface.points, triangles, edge) for edge in edges])
+    return volumes_in_layers(surface.points, triangles, run.size, run.periodic, edges)

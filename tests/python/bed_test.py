@@ -8,7 +8,8 @@ import made_up_folder as made_up
 import thalweg
 from thalweg import bed, literature
 from thalweg.layers import LayerSums, disk_below, layer_profiles, parts_in_layers, volume_below
-from thalweg.obstacles import mesh_below, obstacles, union_in_layers
+from thalweg.mesh_volume import volumes_in_layers
+from thalweg.obstacles import obstacles, union_in_layers
 
 D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
 
@@ -170,13 +171,28 @@ class Layers(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "analysis.bed_surface"):
             bed.shields_number(run, 10 * D)
 
-    def test_the_volume_below_a_height_of_a_slope(self):
+    def test_the_volume_in_layers_of_a_slope(self):
         # A wedge whose top rises from 0 to 2 along x, over a plan of 4 by 3.
         points = np.array([(x, y, z) for y in (0, 3) for x, z in ((0, 0), (4, 0), (4, 2))], float)
         faces = np.array([(0, 1, 2), (3, 5, 4), (0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (2, 5, 3), (2, 3, 0)])
-        for height in (0.0, 0.5, 1.0, 2.0, 3.0):
-            z = min(height, 2.0)
-            self.assertAlmostEqual(mesh_below(points, faces, height), 3.0 * (4.0 * z - z * z), 2)
+        edges = np.array([0.0, 0.5, 1.0, 2.0, 3.0])
+        top = np.minimum(edges, 2.0)
+        found = volumes_in_layers(points, faces, np.array([4.0, 3.0, 3.0]), (False, False, False), edges)
+        np.testing.assert_allclose(found, np.diff(3.0 * (4.0 * top - top**2)), atol=1e-4)
+
+    def test_the_volume_that_several_solids_enclose_counts_once(self):
+        faces = np.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6),
+                          (0, 6, 2), (1, 3, 7), (1, 7, 5)])
+        unit = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+        low, tall = unit * (2, 1, 1) + (1, 1, 0), unit * (2, 1, 2) + (2, 1, 0)
+        two = np.vstack([low, tall]), np.vstack([faces, faces + 8])
+        box, edges = np.array([4.0, 3.0, 2.0]), np.array([0.0, 1.0, 2.0])
+        column = 4.0 / 250
+        np.testing.assert_allclose(volumes_in_layers(*two, box, (False, False, False), edges), [3.0, 2.0], atol=column)
+        # A rib longer than the periodic box, and a block that walls cut.
+        rib = unit * (5, 1, 1) + (-1, 1, 0)
+        np.testing.assert_allclose(volumes_in_layers(rib, faces, box, (True, True, False), edges), [4.0, 0.0], atol=4 * column)
+        np.testing.assert_allclose(volumes_in_layers(rib, faces, box, (False, False, False), edges), [4.0, 0.0], atol=1e-9)
 
     def test_spheres_that_are_free_count_one_by_one(self):
         run, post, _ = self.with_a_post(fixed=False)
