@@ -1,6 +1,7 @@
 #include "analysis/observers/entrainment.hpp"
 
 #include "analysis/observer/mean_observer.hpp"
+#include "analysis/tools/sphere_in_layer.hpp"
 #include "analysis/tools/way_between.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/ranks.hpp"
@@ -76,7 +77,9 @@ std::vector<GlobalId> Entrainment::take_samples(const Snapshot& snapshot, const 
   std::vector<Seen> seen;
   for (std::size_t b = 0; b < watched.size(); ++b) {
     if (watched[b] == 0) continue;
-    const BodiesHere::State state = bodies.state(b);
+    BodiesHere::State state = bodies.state(b);
+    const Vec3 of_gradient = volume_of(state.radius, grains.disk_thickness) * grains.force_density;
+    state.record.set(GrainRecord::fluid_force, state.record[GrainRecord::fluid_force] + of_gradient);
     seen.push_back({bodies.ids()[b], state.radius, state.mass, state.record});
   }
   std::vector<char> chosen(grains.id.size(), 0);

@@ -35,6 +35,8 @@ struct GrainView {
   std::int64_t global_count = 0;  // over all ranks
   GlobalId id_limit = 0;          // ids are below it and the global count; larger where grains have come in or left
   double disk_thickness = 0.0;    // m; 0: spheres
+  // N/m^3, on the volume of each besides the force of gravity: of the pressure gradient that holds a mean velocity.
+  Vec3 force_density = Vec3::Zero();
   std::span<const GlobalId> id;
   std::span<const double> radius;          // m
   std::span<const double> mass;            // kg

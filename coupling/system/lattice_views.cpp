@@ -29,6 +29,7 @@ void LatticeSystem<Real>::show_grains(Snapshot& s) const {
   s.momentum = momentum_ ? &*momentum_ : nullptr;
   s.grains.global_count = grains_->global_count();
   s.grains.id_limit = grains_->id_limit();
+  s.grains.force_density = held_force_on_grains();
   s.grains.id = {store.id.data(), n};
   s.grains.radius = {store.radius.data(), n};
   s.grains.mass = {store.mass.data(), n};

@@ -54,9 +54,8 @@ ForceOnGrain body_force(const Case& c) {
 }
 
 ForceOnGrain buoyancy_in_load(const Case& c) {
-  if (c.gravity.mode != GravityMode::full) return [](double, double) { return Vec3(Vec3::Zero()); };
-  return [gravity = gravity_vector(c.gravity), density = c.fluid.density](double, double radius) {
-    return Vec3(0.0, 0.0, -displaced_mass(density, radius) * gravity.z());
+  return [submerged = submerged_weight(c), applied = body_force(c)](double mass, double radius) {
+    return Vec3(submerged(mass, radius) - applied(mass, radius));
   };
 }
 

@@ -21,7 +21,8 @@ Vec3 balancing_acceleration(const Case& c);
 // balanced gravity the submerged weight less the share of the mean pressure gradient.
 ForceOnGrain body_force(const Case& c);
 
-// The buoyancy in the fluid's load: none in reduced gravity, in full gravity that of the hydrostatic pressure.
+// The submerged weight less that force, which the load of the fluid must make up for: none in reduced gravity, in full
+// gravity the buoyancy of the hydrostatic pressure, along a held flow the weight of the displaced fluid.
 ForceOnGrain buoyancy_in_load(const Case& c);
 
 }  // namespace thalweg::driver

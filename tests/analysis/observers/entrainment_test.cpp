@@ -73,6 +73,7 @@ public:
       snapshot.grains.clump = clump_;
       snapshot.grains.clumps = clumps;
     }
+    snapshot.grains.force_density = force_density;
     snapshot.grains.id = id_;
     snapshot.grains.radius = radii_;
     snapshot.grains.mass = masses_;
@@ -97,6 +98,8 @@ public:
   }
 
   const Decomposition& decomposition() const { return decomposition_; }
+
+  Vec3 force_density = Vec3::Zero();
 
 private:
   void add(GlobalId id, GlobalId clump, const Vec3& place, const Vec3& velocity, double load, const Vec3& couple) {
@@ -224,6 +227,27 @@ TEST(Entrainment, OfClumpsTakesTheWholeAndAllItsContacts) {
   }
   EXPECT_EQ(named(clump.arrays, "contact_point").shape[0], 22u);
   EXPECT_EQ(clump.numbers.back().name, "contact_member");
+}
+
+// The pressure gradient that holds a flow pushes a grain as well: its force on the volume is the fluid's.
+TEST(Entrainment, CountsTheForceOfTheGradientThatHoldsAFlow) {
+  Bed bed, held;
+  held.force_density = Vec3(6.0, 0.0, 0.0);
+  const PeriodicBox box = bed.decomposition().box();
+  Entrainment without(MPI_COMM_WORLD, box, settings({})), with(MPI_COMM_WORLD, box, settings({}));
+  for (std::int64_t step = 0; step <= 150; ++step) bed.show(without, step), held.show(with, step);
+  const Records before = without.take_records(), after = with.take_records();
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const auto values = [](const Records& records, const char* name) {
+    return named(records.events.at(1).arrays, name).values;
+  };
+  const double force = 6.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
+  for (std::size_t n = 0; n < values(before, "time").size(); ++n) {
+    EXPECT_NEAR(values(after, "fluid_force")[3 * n] - values(before, "fluid_force")[3 * n], force, 1e-12);
+    // About a hinge along y, a lever below the centre.
+    EXPECT_NEAR(std::abs(values(after, "fluid_torque")[n] - values(before, "fluid_torque")[n]), lever * force, 1e-12);
+    EXPECT_EQ(values(after, "couple_torque")[n], values(before, "couple_torque")[n]);
+  }
 }
 
 // Grain 58 starts at 1.105 s and goes on beyond the face of the box at 1.205 s; listed grains alone are watched.

@@ -39,5 +39,17 @@ TEST(GrainWeight, IsSubmergedAlongAHeldFlow) {
   }
 }
 
+TEST(GrainWeight, LacksWhatTheLoadOfTheFluidHas) {
+  const auto lacks = [](const Case& c) { return buoyancy_in_load(c)(mass, radius); };
+  Case held = flume(GravityMode::reduced);
+  const Vec3 g = gravity_vector(held.gravity);
+  EXPECT_EQ(lacks(held), Vec3(0.0, 0.0, 0.0));
+  EXPECT_TRUE(lacks(flume(GravityMode::full)).isApprox(Vec3(0.0, 0.0, -g.z()), 1e-12));
+  held.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.5, .response_time = 0.1};
+  EXPECT_TRUE(lacks(held).isApprox(Vec3(g.x(), 0.0, 0.0), 1e-12));
+  held.fluid.mean_velocity->on_grains = false;
+  EXPECT_EQ(lacks(held), Vec3(0.0, 0.0, 0.0));
+}
+
 }  // namespace
 }  // namespace thalweg::driver::grain_weight_test
