@@ -90,6 +90,11 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
     throw KeyError("population",
                    "its clumps are from a file and have no common shape; give the number of a population "
                    "with a shape, or of spheres");
+  if (const FileFigures& of = population.figures; of.least_density < of.largest_density)
+    throw KeyError("population",
+                   fmt::format("its grains are from a file and have densities from {:g} to {:g} kg/m^3, of which a "
+                               "supply has one; give the number of a population of one density",
+                               of.least_density, of.largest_density));
   check(supply.region, box_size, "region", true);
   if (supply.above_bed)
     check_heights(*supply.above_bed, supply.region,
@@ -101,19 +106,23 @@ void check(const SinkKeys& sink, const Vec3& box_size) {
   if (sink.recirculation) check(sink.recirculation->region, box_size, "recirculation.region", true);
 }
 
+double mass_rate(const SupplyKeys& keys, const Population& population, double unit_rate) {
+  return keys.mass_rate ? *keys.mass_rate : *keys.transport_rate * unit_rate * population.density;
+}
+
 double mean_mass(const Population& population) {
   return population.density * population.volume() / static_cast<double>(population.count);
 }
 
 dem::Supply supply_of(const SupplyKeys& keys, std::span<const Population> populations, const Vec3& box_size,
-                      double unit_mass_rate) {
+                      double unit_rate) {
   const auto number = static_cast<std::size_t>(keys.population);
   const Population& population = populations[number];
   dem::Supply supply;
   supply.entrance = {zone_of(keys.region, population.thickness > 0.0, box_size), keys.velocity, keys.seed};
   if (keys.above_bed) supply.entrance.above_bed = {keys.above_bed->lower, keys.above_bed->upper};
   supply.by_mass = !keys.rate;
-  supply.rate = keys.rate ? *keys.rate : keys.mass_rate ? *keys.mass_rate : *keys.transport_rate * unit_mass_rate;
+  supply.rate = keys.rate ? *keys.rate : mass_rate(keys, population, unit_rate);
   supply.from = keys.from;
   supply.until = keys.until.value_or(std::numeric_limits<double>::infinity());
   const int material = material_of(populations, number);

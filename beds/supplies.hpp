@@ -15,10 +15,13 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
 void check(const SinkKeys& sink, const Vec3& box_size);
 
 // The grains of a supply have the sizes of its population, each as often, in an order that is shuffled anew whenever
-// all have come in. unit_mass_rate: kg/s, of a transport rate of 1.
+// all have come in. unit_rate: m^3/s, of a transport rate of 1.
 dem::Supply supply_of(const SupplyKeys& keys, std::span<const Population> populations, const Vec3& box_size,
-                      double unit_mass_rate);
+                      double unit_rate);
 dem::Sink sink_of(const SinkKeys& keys, bool disks, const Vec3& box_size);
+
+// kg/s of a supply of this population whose rate is no number of grains.
+double mass_rate(const SupplyKeys& keys, const Population& population, double unit_rate);
 
 // The mean mass of a grain or clump of a population, kg.
 double mean_mass(const Population& population);

@@ -278,7 +278,7 @@ private:
   void move_cuts();
   void migrate(ContactHistories& histories);
   ContactHistories load_histories(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
-                                  const std::vector<int>& owner, bool with_walls);
+                                  const std::vector<int>& owner, std::int64_t walls);
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
   void build_dependents(const ContactHistories& histories);

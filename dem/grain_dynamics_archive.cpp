@@ -180,9 +180,9 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   const int ranks = size_of(communicator_), me = rank_of(communicator_);
   const std::int64_t walls = archive.integer_attribute(group + "/walls");
   const std::int64_t solids = archive.has(group + "/solids") ? archive.integer_attribute(group + "/solids") : 0;
-  const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size()) &&
-                          solids == static_cast<std::int64_t>(parameters_.solids.size());
-  if (!same_walls && !as_start)
+  const bool same_walls = walls == static_cast<std::int64_t>(parameters_.walls.size()),
+             same_solids = solids == static_cast<std::int64_t>(parameters_.solids.size());
+  if (!(same_walls && same_solids) && !as_start)
     throw InputError(
         fmt::format("The saved grains had {} walls and {} solids, but this case has {} and {}; both must be the same.",
                     walls, solids, parameters_.walls.size(), parameters_.solids.size()));
@@ -233,8 +233,12 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
     row.value[GrainRow::position] = {x[0], x[1], x[2]};
     owner.push_back(decomposition_.owner_of(x));
   }
+  // Walls are known by their number, and solids come behind them.
+  const std::int64_t known_walls = !same_walls   ? 0
+                                   : same_solids ? walls + static_cast<std::int64_t>(touches_per_solid) * solids
+                                                 : walls;
   const std::vector<Clump> clumps = load_clumps(archive, group, batch, owner);
-  const ContactHistories histories = load_histories(archive, group, batch, owner, same_walls);
+  const ContactHistories histories = load_histories(archive, group, batch, owner, known_walls);
 
   replace_owned(store_, exchange_grains(communicator_, std::move(batch), owner, store_.attached_width));
   const std::vector<LightestGrain> lightest = lightest_of(store_, clumps, materials_.count(), communicator_);
@@ -249,7 +253,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
 // read, and their owners.
 ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std::string& group,
                                                const GrainBatch& batch, const std::vector<int>& owner,
-                                               bool with_walls) {
+                                               std::int64_t walls) {
   const Readers readers(batch, communicator_);
   constexpr int no_rank = -1;
   const auto sent_on = [&](const ContactHistories& histories, const auto& rank_for) {
@@ -266,7 +270,7 @@ ContactHistories GrainDynamics::load_histories(ArchiveReader& archive, const std
     return arrived;
   };
   // First to the ranks that read one of its grains and so know the owner, then to the owners.
-  const ContactHistories read = read_histories(archive, group, history_parts_of(list_), with_walls, communicator_);
+  const ContactHistories read = read_histories(archive, group, history_parts_of(list_), walls, communicator_);
   const ContactHistories met = sent_on(read, [&](GlobalId id) { return readers.rank_of(id); });
   return sent_on(met, [&](GlobalId id) {
     const std::optional<std::size_t> row = row_of(batch, id);

@@ -1,5 +1,6 @@
 // Grains that come into the box and leave it (dem/supply): the part of GrainDynamics that changes who is there.
 #include "core/base/error.hpp"
+#include "core/base/round_off.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/state/whole_dataset.hpp"
 #include "dem/contact/wall_touches.hpp"
@@ -146,6 +147,10 @@ std::vector<Diagnostic> GrainDynamics::turnover_diagnostics() const {
 
 // Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, and bodies and mass of each
 // supply and sink.
+static std::string rate_name(const std::string& group, std::size_t supply) {
+  return fmt::format("{}/supply_{}_rate", group, supply);
+}
+
 void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& group) const {
   if (!turnover_.any()) return;
   const Turnover::State& state = turnover_.state();
@@ -157,6 +162,8 @@ void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& gro
       archive.attribute(fmt::format("{}/{}_{}_bodies", group, name, n), (*tallies)[n].bodies);
       archive.attribute(fmt::format("{}/{}_{}_mass", group, name, n), (*tallies)[n].mass);
     }
+  for (std::size_t n = 0; n < parameters_.supplies.size(); ++n)
+    archive.attribute(rate_name(group, n), parameters_.supplies[n].rate);
   if (state.returning.empty()) return;
   // The first rank writes all that return, body by body.
   const std::string returning = group + "/returning";
@@ -222,6 +229,21 @@ std::vector<ReturningBody> load_returning(ArchiveReader& archive, const std::str
 
 }  // namespace
 
+// What is due is counted from the start of the run, so that another rate would bring a burst or a pause.
+static void check_rates(ArchiveReader& archive, const std::string& group, const std::vector<Supply>& supplies) {
+  for (std::size_t n = 0; n < supplies.size(); ++n) {
+    const std::string name = rate_name(group, n);
+    if (!archive.has(name)) continue;  // older checkpoints have none
+    const double saved = archive.real_attribute(name), now = supplies[n].rate;
+    if (!same_but_for_rounding(saved, now))
+      throw InputError(
+          fmt::format("Supply {0} brings {1:.4g} {3} now, and has brought {2:.4g} {3} so far. A transport rate goes by "
+                      "the reference "
+                      "grain, the density of the fluid and gravity; set these back, or begin a new run.",
+                      n, now, saved, supplies[n].by_mass ? "kg/s" : "grains/s"));
+  }
+}
+
 void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& group) {
   if (!turnover_.any() || !archive.has(group + "/first_supplied_id")) return;
   turnover_.set_first_id(archive.integer_attribute(group + "/first_supplied_id"));
@@ -233,6 +255,7 @@ void GrainDynamics::load_turnover(ArchiveReader& archive, const std::string& gro
       (*tallies)[n].bodies = archive.integer_attribute(fmt::format("{}/{}_{}_bodies", group, name, n));
       (*tallies)[n].mass = archive.real_attribute(fmt::format("{}/{}_{}_mass", group, name, n));
     }
+  check_rates(archive, group, parameters_.supplies);
   state.returning = load_returning(archive, group + "/returning");
   turnover_.set_state(std::move(state));
 }

@@ -69,10 +69,13 @@ std::vector<SizeCount> sizes_of(const std::vector<Body>& bodies, const Ranks& ra
 void take_extremes(const Population& population, const Ranks& ranks, FileFigures& figures) {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0.0, fastest = 0.0;
   double lightest = std::numeric_limits<double>::max(), radius_per_mass = 0.0, largest_member = 0.0;
+  double least_density = lightest, largest_density = 0.0;
   for (const BedGrain& row : population.file) {
     smallest = std::min(smallest, 2.0 * row.radius);
     largest = std::max(largest, 2.0 * row.radius);
     fastest = std::max(fastest, row.velocity.norm());
+    least_density = std::min(least_density, row.density);
+    largest_density = std::max(largest_density, row.density);
     if (row.clump >= 0) {
       largest_member = std::max(largest_member, row.radius);
       continue;
@@ -85,6 +88,8 @@ void take_extremes(const Population& population, const Ranks& ranks, FileFigures
   figures.largest_diameter = ranks.largest(largest);
   figures.fastest = ranks.largest(fastest);
   figures.lightest_grain = ranks.smallest(lightest);
+  figures.least_density = ranks.smallest(least_density);
+  figures.largest_density = ranks.largest(largest_density);
   figures.radius_per_mass = ranks.largest(radius_per_mass);
   figures.largest_member = ranks.largest(largest_member);
 }

@@ -112,6 +112,8 @@ struct FileFigures {
   double smallest_diameter = 0.0;  // m, of grains and members
   double largest_diameter = 0.0;   // m
   double lightest_grain = 0.0;     // kg, of those that are not members
+  double least_density = 0.0;      // kg/m^3, of all rows
+  double largest_density = 0.0;    // kg/m^3
   double radius_per_mass = 0.0;    // m/kg, the largest of those
   double largest_member = 0.0;     // m, radius
   double volume = 0.0;             // m^3, of all grains

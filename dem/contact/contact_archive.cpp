@@ -34,7 +34,7 @@ void write_histories(ArchiveWriter& archive, const std::string& group, const Con
 }
 
 ContactHistories read_histories(ArchiveReader& archive, const std::string& group, std::span<const HistoryPart> parts,
-                                bool walls, MPI_Comm communicator) {
+                                std::int64_t walls, MPI_Comm communicator) {
   const RowRange share(static_cast<std::int64_t>(archive.shape(ids_name(group)).at(0)), size_of(communicator),
                        rank_of(communicator));
   const auto rows = static_cast<std::size_t>(share.size());
@@ -48,7 +48,7 @@ ContactHistories read_histories(ArchiveReader& archive, const std::string& group
   ContactHistories histories(doubles_of(parts));
   std::vector<double> values;
   for (std::size_t r = 0; r < rows; ++r) {
-    if (ids[2 * r + 1] < 0 && !walls) continue;
+    if (-1 - ids[2 * r + 1] >= walls) continue;
     values.clear();
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const auto begin = columns[p].begin() + static_cast<std::ptrdiff_t>(r * parts[p].size);

@@ -19,8 +19,8 @@ void write_histories(ArchiveWriter& archive, const std::string& group, const Con
                      std::span<const HistoryPart> parts, MPI_Comm communicator);
 
 // An even share of the histories for each rank; parts that were not saved, because the law had none of them, are zero.
-// walls: whether contacts with walls are wanted. Collective.
+// walls: contacts with walls and solids from this number on are left out. Collective.
 ContactHistories read_histories(ArchiveReader& archive, const std::string& group, std::span<const HistoryPart> parts,
-                                bool walls, MPI_Comm communicator);
+                                std::int64_t walls, MPI_Comm communicator);
 
 }  // namespace thalweg::dem

@@ -8,17 +8,17 @@
 
 namespace thalweg::driver {
 
-double unit_mass_rate(const Case& c) {
+double unit_rate(const Case& c) {
   if (!has_fluid(c) || c.grains.empty()) return 0.0;
   const ReferenceGrain grain = reference_grain(c);
   const double weight = std::abs(grain.density / c.fluid.density - 1.0) * gravity_vector(c.gravity).norm();
-  return grain.density * std::sqrt(weight * grain.diameter) * grain.diameter * c.domain.size.y();
+  return std::sqrt(weight * grain.diameter) * grain.diameter * c.domain.size.y();
 }
 
 double grains_per_second(const Case& c, const beds::SupplyKeys& supply) {
   if (supply.rate) return *supply.rate;
-  const double mass_rate = supply.mass_rate ? *supply.mass_rate : *supply.transport_rate * unit_mass_rate(c);
-  return mass_rate / beds::mean_mass(c.grains[static_cast<std::size_t>(supply.population)]);
+  const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];
+  return beds::mass_rate(supply, population, unit_rate(c)) / beds::mean_mass(population);
 }
 
 namespace {

@@ -7,8 +7,8 @@
 
 namespace thalweg::driver {
 
-// kg/s, of a transport rate q* of 1 over the width of the box; 0 where q* has no meaning.
-double unit_mass_rate(const Case& c);
+// m^3/s, of a transport rate q* of 1 over the width of the box; 0 where q* has no meaning.
+double unit_rate(const Case& c);
 
 // Grains/s of a supply, in the mean.
 double grains_per_second(const Case& c, const beds::SupplyKeys& supply);

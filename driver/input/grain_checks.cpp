@@ -195,7 +195,7 @@ void check_supplies(const Case& c, const io::YamlDocument& document) {
     const double radius = 0.5 * (population.shape ? population.smallest_diameter() : population.largest_diameter());
     check_entrance(c, c.supplies[n].region, radius, key + ".region", document);
     if (c.supplies[n].above_bed) check_for_bed(c, key + ".above_bed", document);
-    if (c.supplies[n].transport_rate && !(unit_mass_rate(c) > 0.0))
+    if (c.supplies[n].transport_rate && !(unit_rate(c) > 0.0))
       throw document.error(
           key + ".transport_rate",
           "q* has no meaning without a fluid in which the grains are heavier; give rate in grains/s or "

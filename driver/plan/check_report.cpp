@@ -185,8 +185,8 @@ void add_turnover(const Case& c, Lines& lines) {
   for (std::size_t n = 0; n < c.supplies.size(); ++n) {
     const beds::SupplyKeys& supply = c.supplies[n];
     const double rate = grains_per_second(c, supply), until = std::min(c.run.until, supply.until.value_or(c.run.until));
-    const double mass = beds::mean_mass(c.grains[static_cast<std::size_t>(supply.population)]);
-    const double unit = unit_mass_rate(c);
+    const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];
+    const double mass = beds::mean_mass(population), unit = unit_rate(c) * population.density;
     lines.push_back(fmt::format(
         "supply {:<3} {:.4g} grains/s like those of grains.{}, {:.3g} kg/s{}: {:.4g} from {:g} "
         "to {:g} s{}",

@@ -5,6 +5,7 @@
 #include "driver/input/case_reader.hpp"
 #include "driver/setup/bed_archive.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
+#include "tests/driver/case_texts.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -192,6 +193,24 @@ TEST_F(BedShare, BeginsWithTheSameGrains) {
     ASSERT_EQ(found.shape->members.size(), 3u);
   }
   EXPECT_EQ(next, mine.clumps.size());
+}
+
+// A supply brings grains of one density, and would have brought those of the mean.
+TEST_F(BedShare, IsNoSupplyWithSeveralDensities) {
+  std::vector<BedGrain> rows = rows_of_bed();
+  std::erase_if(rows, [](const BedGrain& row) { return row.clump >= 0; });
+  for (std::size_t n = 0; n < rows.size(); ++n) rows[n].id = static_cast<GlobalId>(n);
+  const auto read = [&] {
+    return read_case(folder_ / "case.yaml",
+                     {"supplies=[{population: 1, rate: 10, region: {lower: [0, 0, 0.03], upper: [0.06, 0.04, 0.05]}}]"},
+                     {}, MPI_COMM_WORLD);
+  };
+  write(rows);
+  const std::string message = testing::message_of<InputError>(read);
+  EXPECT_NE(message.find("densities from 2550 to 2553 kg/m^3"), std::string::npos) << message;
+  for (BedGrain& row : rows) row.density = 2550.0;
+  write(rows);
+  EXPECT_NO_THROW(read());
 }
 
 TEST_F(BedShare, IsTheSameFromACheckpoint) {

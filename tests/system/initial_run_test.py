@@ -55,6 +55,11 @@ run: {until: 0.1}
             numpy.testing.assert_array_equal(begun[name], values, err_msg=name)
         return continued
 
+    def test_springs_on_walls_stay_beside_a_new_solid(self):
+        self.case.write_text(self.DRY)
+        self.run_well("run", self.case, "--out", "first")
+        self.assert_goes_on(0.01, "--set", "solids=[{sphere: {centre: [0.0064, 0.0064, 0.018], radius: 0.001}}]")
+
     def test_grains_and_fluid_go_on(self):
         self.run_well("run", self.case, "--out", "first")
         self.assert_goes_on(0.00505, "--set", "initial.fields=[grains, fluid]", ranks=2)

@@ -11,6 +11,7 @@ import numpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
 from program import ProgramTest
+import thalweg
 
 DRY = """
 system: grains
@@ -182,10 +183,37 @@ class TurnoverRun(ProgramTest):
                       sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
         self.assertEqual(self.checkpoints("again")[-1], self.checkpoints("one")[-1])
 
+    def test_grains_that_come_in_after_a_restart_without_any_are_shown(self):
+        # The two of the start are in the sink at once; the supply begins after the checkpoint at 0.1 s.
+        settings = []
+        for setting in ("grains=[{count: 2, diameter: 3.0e-3, density: 2650, placement: {pattern: random, region: "
+                        "{lower: [0, 0, 0], upper: [0.06, 0.03, 0.02]}}}]", "supplies=[{population: 0, rate: 300, from: 0.12, region: "
+                        "{lower: [0.01, 0.01, 0.06], upper: [0.05, 0.02, 0.07]}}]",
+                        "sinks=[{region: {lower: [0, 0, 0], upper: [0.06, 0.03, 0.03]}}]"):
+            settings += ["--set", setting]
+        self.run_well("run", self.case, "--out", self.folder / "one", *settings)
+        self.run_well("run", self.case, "--out", self.folder / "again", *settings, "--restart",
+                      sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
+        known = self.series("one")
+        self.assertEqual(known["grains"][numpy.searchsorted(known["time"], 0.1)], 0)
+        for run in ("one", "again"):
+            frames = thalweg.Run(self.folder / run).grains
+            self.assertEqual(len(frames[-1]), known["grains"][-1])
+        self.assertGreater(known["grains"][-1], 5)
+
     def test_a_restart_keeps_supplies_and_sinks(self):
         self.run_well("run", self.case, "--out", self.folder / "one", "--set", "run.until=0.01")
         self.assert_refused("run", self.case, "--out", self.folder / "two", "--restart", self.folder / "one", "--set",
                             "supplies.0.rate=200", words=["supplies.0.rate = 200: the run to be continued has 300"])
+
+    def test_a_restart_keeps_what_the_rate_of_a_supply_depends_on(self):
+        # A reference grain of twice the diameter makes the unit of q* 2^(3/2) times as large.
+        self.case.write_text(STREAM)
+        settings = ["--set", "run.until=0.02", "--set", "supplies.0.rate=null", "--set", "supplies.0.transport_rate=0.1"]
+        self.run_well("run", self.case, "--out", self.folder / "one", *settings)
+        self.assert_refused("run", self.case, "--out", self.folder / "two", "--restart", self.folder / "one", *settings,
+                            "--until", "0.03", "--set", "analysis.reference_diameter=0.01",
+                            words=["Supply 0 brings", "set these back"])
 
 
 program.main()
