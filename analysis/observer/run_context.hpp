@@ -24,6 +24,7 @@ struct FluidContext {
   bool top_drags = false;            // the face z_high exchanges shear with the flow
   bool top_moves = false;            // the top moves along x
   bool has_solids = false;           // solids take momentum from it
+  bool side_walls_move = false;      // one of them along x, so that no hydraulic radius says what it takes
 };
 
 // Context of a run with a model fluid (model_fluid/model_fluid.hpp).
@@ -85,6 +86,7 @@ struct GrainContext {
 struct RunContext {
   PeriodicBox box;
   double until = 0.0;           // s, the end of the run
+  bool has_rows = true;         // of the series, with which observers measure whose `every` is 0
   double ramp = 0.0;            // s in which gravity rises
   Vec3 gravity = Vec3::Zero();  // m/s^2
   std::optional<FluidContext> fluid;

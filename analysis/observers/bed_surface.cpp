@@ -91,7 +91,8 @@ void BedSurface::measure(const Snapshot& snapshot, bool again) {
   bed_height_ = bed.height;
   if (!flow_ || flow_->shields_stress <= 0.0) return;
   if (again && needs_momentum() && snapshot.momentum == nullptr) return;  // that of the checkpoint
-  bed_stress_ = flow_->driving_stress * hydraulic_radius();
+  const double risen = snapshot.time < flow_->ramp ? snapshot.time / flow_->ramp : 1.0;
+  bed_stress_ = risen * flow_->driving_stress * hydraulic_radius();
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
   const double plan = box_.size.x() * box_.size.y(), width = layers_.width();
@@ -223,12 +224,14 @@ std::optional<BedFlow> bed_flow(const RunContext& run) {
   if (!run.fluid) return std::nullopt;
   BedFlow flow;
   flow.side_walls = run.fluid->side_walls;
-  const bool by_slope = run.gravity.x() > 0.0 && run.gravity.z() < 0.0 && run.box.periodic[0] && !run.fluid->steered;
+  if (run.fluid->side_walls_move) return flow;
+  const bool by_slope = run.gravity.x() != 0.0 && run.gravity.z() < 0.0 && run.box.periodic[0] && !run.fluid->steered;
   if (!by_slope && !run.fluid->steered && !run.fluid->top_moves) return flow;
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
   flow.driving_stress = run.fluid->density * run.gravity.x();
   flow.has_solids = run.fluid->has_solids;
+  flow.ramp = run.ramp;
   flow.measured =
       run.fluid->steered || run.fluid->top_drags || run.fluid->has_solids || !run.grains->obstacles.spheres.empty();
   return flow;

@@ -53,9 +53,11 @@ ObserverMemory memory_of(const BedSurfaceKeys& keys, const RunContext& run, cons
 struct BedFlow {
   int side_walls = 0;           // those that hold the flow back
   double driving_stress = 0.0;  // Pa/m: rho_f g_x
-  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, and no stress is shown
+  double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, or it is not known what side
+                                // walls take of it; no stress is shown
   bool measured = false;        // the forces are those of the moment (FluidSource::drive())
   bool has_solids = false;      // whose force by height is needed (Snapshot::momentum); without, all counts as above
+  double ramp = 0.0;            // s in which gravity rises, from the start of the run
 };
 
 class BedSurface : public Observer {

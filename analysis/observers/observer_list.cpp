@@ -16,12 +16,13 @@ std::string begins_too_late(const char* section, double from, double until) {
       section, from, until, 0.5 * until);
 }
 
-// every, until: s.
+// every: s, 0: with the rows of the series. until: s.
 std::string measures_too_rarely(const char* section, double every, double until) {
   return fmt::format(
-      "The measurement analysis.{0} is made every {1} s, and the run ends after {2} s, before the first: consider "
-      "analysis.{0}.every: {3:.2g}.",
-      section, every, until, 0.01 * until);
+      "The measurement analysis.{} is made {}, and the run ends after {} s, before the first: consider "
+      "analysis.{}.every: {:.2g}.",
+      section, every > 0.0 ? fmt::format("every {} s", every) : "with the rows of the series", until, section,
+      0.01 * until);
 }
 
 // True if the run has what the observer of these keys looks at.
@@ -53,7 +54,8 @@ std::vector<std::string> warnings(const RequestedObservers& requested, const Run
     if constexpr (requires { keys->from; })
       if (keys && keys->from >= run.until) found.push_back(begins_too_late(Keys::section, keys->from, run.until));
     if constexpr (requires { keys->every; })
-      if (keys && keys->every > run.until) found.push_back(measures_too_rarely(Keys::section, keys->every, run.until));
+      if (keys && (keys->every > run.until || (keys->every == 0.0 && !run.has_rows)))
+        found.push_back(measures_too_rarely(Keys::section, keys->every, run.until));
     if constexpr (requires { warning(*keys, run); }) {
       const std::optional<std::string> sentence = keys ? warning(*keys, run) : std::nullopt;
       if (sentence) found.push_back(*sentence);

@@ -28,9 +28,9 @@ constexpr double checkpoint_row_bytes = 100.0, frame_row_bytes = 350.0;
 
 double link_count(const Case& c) {
   double links = 0.0;
-  for (const beds::Population& population : c.grains) {
-    links += static_cast<double>(population.count) * links_of_sphere(population.diameter / c.domain.spacing);
-  }
+  for (const beds::Population& population : c.grains)
+    for (const beds::SizeCount& size : population.sizes_of_grains())
+      links += static_cast<double>(size.count) * links_of_sphere(size.diameter / c.domain.spacing);
   return has_fluid(c) ? links : 0.0;
 }
 

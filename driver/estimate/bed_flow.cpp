@@ -60,7 +60,9 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = settled_height(c);
   flow.depth = c.domain.size.z() - flow.bed_height;
-  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity) return flow;
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity ||
+      side_walls_move(c))
+    return flow;
   flow.side_walls = side_walls(c);
   flow.top_drags = c.domain.faces[top].drags();
   flow.hydraulic_radius = hydraulic_radius(c, flow.depth);
@@ -94,6 +96,13 @@ bool drives_flow(const Case& c, int axis) {
 }
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
+
+bool side_walls_move(const Case& c) {
+  const auto moves = [&](FaceIndex face) {
+    return c.domain.faces[face].type == lbm::FaceType::moving && c.domain.faces[face].velocity.x() != 0.0;
+  };
+  return moves(y_low) || moves(y_high);
+}
 
 double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
 

@@ -15,7 +15,7 @@ inline constexpr double neutral_density = 1e-6;
 // between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
 // gravity along the bed, g times the sine of its angle. Under a top that drags, H is half the depth: what lies above
 // the middle weighs on the top. Not a number where a case lacks what a number needs: without a slope down along x,
-// which is periodic, there is no Shields number.
+// which is periodic, and beside side walls that move along x there is no Shields number.
 struct FlowNumbers {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double slope = unknown;              // tangent of the bed's angle
@@ -51,6 +51,9 @@ bool drives_flow(const Case& c, int axis);
 
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
+
+// True if one of them moves along x, and takes no share that follows from the hydraulic radius.
+bool side_walls_move(const Case& c);
 
 // m, of a depth (m): half of it under a top that drags and holds the other half.
 double held_by_the_bed(const Case& c, double depth);

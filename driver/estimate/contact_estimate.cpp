@@ -41,10 +41,12 @@ double given_speed(const Case& c) {
   return fastest;
 }
 
-// Ratio of masses of spheres, disks or clumps of one shape, and of one density.
-double heaviest_over_lightest(const beds::Population& grains) {
-  const double ratio =
-      grains.shape ? grains.coarsest() / grains.finest() : grains.largest_diameter() / grains.smallest_diameter();
+double largest_over_smallest(const beds::Population& grains) {
+  return grains.shape ? grains.coarsest() / grains.finest() : grains.largest_diameter() / grains.smallest_diameter();
+}
+
+// Ratio of masses of spheres, disks or clumps of one shape and density whose sizes have this ratio.
+double ratio_of_masses(const beds::Population& grains, double ratio) {
   return std::pow(ratio, grains.thickness > 0.0 ? 2 : 3);
 }
 
@@ -56,16 +58,20 @@ double speed_of_a_fall(const Case& c) {
 
 double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), given_speed(c)); }
 
-// Adds those of a population with contacts of this material. height: m, of the settled bed.
+// Adds those of a population with contacts of this material: of its smallest grains and of its largest, whose contacts
+// are softer for their size by the linear law. height: m, of the settled bed.
 void add_overlaps(const Case& c, const beds::Population& grains, const dem::ContactParameters& material, double height,
                   Overlaps& found) {
-  const double d = grains.smallest_diameter(), mass = 0.5 * grains.lightest_mass();
   const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
                           std::abs(gravity_vector(c.gravity).z()) * height;
-  if (!periodic_axes(c.domain)[2] && !c.disks)
-    found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
-  if (!grains.held())
-    found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
+  for (const double ratio : {1.0, largest_over_smallest(grains)}) {
+    const double d = ratio * grains.smallest_diameter();
+    const double mass = 0.5 * grains.lightest_mass() * ratio_of_masses(grains, ratio);
+    if (!periodic_axes(c.domain)[2] && !c.disks)
+      found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
+    if (!grains.held())
+      found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
+  }
 }
 
 }  // namespace
@@ -127,7 +133,7 @@ std::optional<DryRestitution> dry_restitution(const Case& c) {
     if (grains.held()) continue;
     const dem::ContactParameters& own = materials[static_cast<std::size_t>(beds::material_of(c.grains, p))];
     const double lightest = grains.lightest_mass();
-    for (const double mass : {lightest, lightest * heaviest_over_lightest(grains)}) {
+    for (const double mass : {lightest, lightest * ratio_of_masses(grains, largest_over_smallest(grains))}) {
       const double between = of(own, 0.5 * mass), at_wall = of(walls.value_or(own), mass);
       found.least = std::min(found.least, between);
       found.most = std::max(found.most, between);

@@ -53,7 +53,7 @@ RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& 
 std::string RunOutput::begin() {
   if (continue_from_) drop_what_is_later();
   const Snapshot snapshot = system_.snapshot();
-  if (snapshot.grains.global_count > 0) {
+  if (!case_.grains.empty()) {  // also where none is there yet, or any more
     add_grains(folder_.path(), "grains", case_.output.grains, {});
     for (const io::NamedGrainOutputKeys& part : case_.output.grain_parts)
       add_grains(folder_.grain_parts(), part.name, part, part);
@@ -74,7 +74,7 @@ void RunOutput::add_grains(const std::filesystem::path& folder, const std::strin
                            const io::GrainOutputKeys& keys, const io::GrainSelectionKeys& selection) {
   if (keys.every > 0.0)
     grains_.emplace_back(keys.every, io::GrainSeries(communicator_, folder, name, selection, keys.fields,
-                                                     population_ids(case_), continue_from_));
+                                                     population_ids(case_), continue_from_, grain_output_facts(case_)));
 }
 
 void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string& name,

@@ -91,13 +91,17 @@ bool same(const std::string& one, const std::string& other) {
   return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() && same_but_for_rounding(a, b);
 }
 
+// In full gravity the pressure of the fluid is hydrostatic, and an integrator has columns of its own. Earlier
+// checkpoints do not say which it was.
+bool is_said_lately(std::string_view key) { return key == "gravity.mode" || key == "run.grain_integrator"; }
+
 bool is_in_the_checkpoint(std::string_view key) {
-  constexpr std::array state{"system",          "domain.size", "domain.spacing", "disks",
-                             "fluid.precision", "supplies",    "sinks"};
+  constexpr std::array<std::string_view, 7> state{"system",          "domain.size", "domain.spacing", "disks",
+                                                  "fluid.precision", "supplies",    "sinks"};
   const auto is_or_is_below = [key](std::string_view section) {
     return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
   };
-  if (std::any_of(state.begin(), state.end(), is_or_is_below)) return true;
+  if (std::any_of(state.begin(), state.end(), is_or_is_below) || is_said_lately(key)) return true;
   return is_or_is_below("grains") && (key.find(".contact") == std::string_view::npos || is_material(key));
 }
 
@@ -152,7 +156,10 @@ std::vector<CaseChange> state_changes(const std::string& before, const std::stri
     const std::size_t end = line.find(separator);
     if (end != std::string::npos) values.emplace_back(line.substr(0, end), line.substr(end + separator.size()));
   }
-  return changes_of(values, state_values(now, dry));
+  Values values_now = state_values(now, dry);
+  std::erase_if(values_now,
+                [&](const auto& value) { return is_said_lately(value.first) && find(values, value.first) == "none"; });
+  return changes_of(values, values_now);
 }
 
 void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {

@@ -155,6 +155,10 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
                          fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
                                      "later run.until",
                                      fluid_time_step(c)));
+  if (c.fluid.mean_velocity && !periodic_axes(c.domain)[0])
+    throw document.error("fluid.mean_velocity",
+                         "faces across x that are not periodic decide how much flows, and a force that steers against "
+                         "them grows without limit; remove the key, or make domain.boundaries.x periodic");
   if (c.fluid.mean_velocity)
     check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
   if (c.fluid.mean_velocity && c.fluid.mean_velocity->response_time < 100.0 * fluid_time_step(c))

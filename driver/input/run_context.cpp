@@ -42,7 +42,8 @@ analysis::FluidContext fluid_context(const Case& c) {
           side_walls(c),
           c.domain.faces[top].drags(),
           c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0,
-          !c.solids.empty()};
+          !c.solids.empty(),
+          side_walls_move(c)};
 }
 
 // Sizes of free grains, and the classes that suit them: the sieves of their populations, where they have some.
@@ -81,6 +82,7 @@ analysis::RunContext run_context(const Case& c) {
   analysis::RunContext context;
   context.box = {c.domain.size, periodic_axes(c.domain)};
   context.until = c.run.until;
+  context.has_rows = c.output.series.every > 0.0 && c.output.series.every <= c.run.until;
   context.ramp = c.run.ramp;
   context.gravity = gravity_vector(c.gravity);
   if (has_fluid(c)) context.fluid = fluid_context(c);

@@ -152,21 +152,22 @@ void add_field(GrainField field, const std::string& name, const Columns& columns
 
 GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
                          GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationIds population_ids,
-                         std::optional<double> continue_from)
+                         std::optional<double> continue_from, const GrainFieldFacts& facts)
     : communicator_(communicator),
       folder_(folder),
       name_(std::move(name)),
       selection_(std::move(selection), population_ids),
       fields_(std::move(fields)),
       population_ids_(std::move(population_ids)),
+      facts_(facts),
       index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
 // Fields in the order of the arrays.
 std::vector<NamedChoice<GrainField>> GrainSeries::fields_in(const Snapshot& snapshot) const {
   GrainFieldFacts facts;
-  facts.clumps = snapshot.grains.clump_count > 0;
-  facts.fluid_force = any_rank(communicator_, !snapshot.grains.fluid_force.empty());
-  facts.fluid_stress = any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
+  facts.clumps = facts_.clumps || snapshot.grains.clump_count > 0;
+  facts.fluid_force = facts_.fluid_force || any_rank(communicator_, !snapshot.grains.fluid_force.empty());
+  facts.fluid_stress = facts_.fluid_stress || any_rank(communicator_, !snapshot.grains.fluid_stress.empty());
   std::vector<NamedChoice<GrainField>> fields;
   for (const NamedChoice<GrainField>& field : grain_fields()) {
     const bool wanted = fields_.empty() ? there_is(field.value, facts) : contains(fields_, field.value);

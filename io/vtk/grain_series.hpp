@@ -23,10 +23,11 @@ namespace thalweg::io {
 class GrainSeries {
 public:
   // fields: empty: all there are. continue_from: simulated time (s) at which a restarted run takes up an existing
-  // series; later frames are removed. Empty: a new series.
+  // series; later frames are removed. Empty: a new series. facts: what frames have although no grain is there that has
+  // it.
   GrainSeries(MPI_Comm communicator, const std::filesystem::path& folder, std::string name,
               GrainSelectionKeys selection, std::vector<GrainField> fields, PopulationIds population_ids,
-              std::optional<double> continue_from = std::nullopt);
+              std::optional<double> continue_from = std::nullopt, const GrainFieldFacts& facts = {});
 
   void write(const Snapshot& snapshot);
 
@@ -42,6 +43,7 @@ private:
   GrainSelection selection_;
   std::vector<GrainField> fields_;
   PopulationIds population_ids_;
+  GrainFieldFacts facts_;
   PvdIndex index_;
 };
 

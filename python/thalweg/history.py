@@ -43,7 +43,7 @@ def sessions_of(folder):
 def take(line, session):
     """A line of a session."""
     passing = IN_PASSING.match(line)
-    for start, words in (("going on from ", "origin"), ("finished", "outcome"), ("not finished", "outcome")):
+    for start, words in (("resuming from ", "origin"), ("finished", "outcome"), ("not finished", "outcome")):
         if line.startswith(start):
             setattr(session, words, line.removeprefix(start) if words == "origin" else line)
     if line.startswith("changed since then: "):

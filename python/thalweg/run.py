@@ -291,11 +291,12 @@ class Run:
     @property
     def driven_by_slope(self):
         """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or
-        drags, no face is open and no wall ends the box along x."""
+        drags, no side wall moves, no face is open and no wall ends the box along x."""
         steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
         open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
         top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
-        return bool(self.gravity[0] > 0.0 and self.periodic[0] and not steered and not open_faces and top_is_free)
+        return bool(self.gravity[0] > 0.0 and self.periodic[0] and not steered and not open_faces and top_is_free
+                    and "moving" not in self.faces("y"))
 
 
 class Profiles(dict):

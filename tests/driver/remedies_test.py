@@ -213,6 +213,10 @@ VARIATIONS = [
         ["0.05 depths of the water from the inlet", "domain.boundaries.x_low.recycling_plane: 0.12"],
     ),
     (WATER, ["analysis={transport_rate: {every: 31}}"], ["is made every 31 s", "analysis.transport_rate.every: 0.3"]),
+    (
+        WATER, ["analysis={transport_rate: {from: 1}}", "output.series.every=0"],
+        ["is made with the rows of the series", "analysis.transport_rate.every: 0.3"],
+    ),
     (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which are 9.81", "gravity.magnitude: 9.81"]),
     (WATER, ["fluid.kinematic_viscosity=1"], ["looks like 1 mm^2/s", "fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),

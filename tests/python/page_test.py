@@ -27,10 +27,10 @@ resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 100 s
 writing run
 warning: The step is <long>.
 t 0.5       of 1 s    50 %  left 1 s   9 steps/s  warning: 3 grains overlap
-not finished, stopped by SIGTERM: at 0.5 s; to go on: the same command with --restart run
+not finished, stopped by SIGTERM: at 0.5 s; to go on, repeat the command with --resume (and without --restart)
 Thalweg 0.1.0 (bbb): Made up
 resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 200 steps to 2 s
-going on from run/checkpoints/step_50.h5 at 0.5 s
+resuming from run/checkpoints/step_50.h5 at 0.5 s
 changed since then: run.until: 1 -> 2
 warning: The step is <long>.
 """
@@ -129,7 +129,7 @@ class Report(unittest.TestCase):
             self.assertRegex(page.text, r"height of the bed 0\.0123 m")
             self.assertIn("host node7 compiler GNU 12.2.0 solids.0.stl ../sill.stl, SHA-256 ab12", page.text)
             self.assertIn("mpirun -n 2 thalweg run", page.text)
-            self.assertEqual("--resume" in page.text, not finished)
+            self.assertEqual(re.search(r"--out \S+ --resume", page.text) is not None, not finished)
 
     def test_the_balance_of_stresses(self):
         diameter = made_up_run.DIAMETER

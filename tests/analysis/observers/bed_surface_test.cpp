@@ -117,6 +117,22 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   EXPECT_EQ(dry.diagnostics().size(), 2u);
 }
 
+// Half of gravity drives the flow in the middle of its ramp.
+TEST(BedSurface, DuringTheRampHasTheStressOfTheMoment) {
+  Spheres spheres(world);
+  BedFlow flow{0, 500.0, 80.0};
+  const auto stress_at = [&](int step) {
+    BedSurface surface(world, spheres.box(), keys(), d, flow, 0.0);
+    surface.observe(spheres.at(step, cubic_lattice(10)));
+    return value_of(surface.diagnostics(), "bed_stress");
+  };
+  const double full = stress_at(2);
+  EXPECT_NEAR(full, 500.0 * 22.0 * d, 1e-10);
+  flow.ramp = 2.0 * spheres.at(2, cubic_lattice(10)).time;
+  EXPECT_NEAR(stress_at(2), 0.5 * full, 1e-10);
+  EXPECT_NEAR(stress_at(9), full, 1e-10);
+}
+
 // A sill of overlapping spheres across a lattice of nine layers, four diameters wide and six high, in place of its
 // grains there. Its spheres are a quarter of a diameter apart: the surface is within 1 - sqrt(1 - 1/8) of a radius of
 // the block, 0.03 d, and its two upper edges are round, 0.2 d^2/4 of a section of 24 d^2: at most 3 % of the block,
@@ -278,12 +294,14 @@ TEST(BedSurface, BeginsAnewWithOtherSettings) {
 
 // Runs that have a stress at all, and its origin. The grains: 1 mm, 2000 kg/m^3 heavier than the water.
 TEST(BedSurface, KnowsWhatDrivesTheWater) {
-  const auto diagnostic_count = [](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
+  bool side_walls_move = false;
+  const auto diagnostic_count = [&](const Vec3& gravity, bool steered, bool top_drags, bool top_moves) {
     Spheres spheres(world);
     RunContext run;
     run.box = spheres.box();
     run.gravity = gravity;
     run.fluid = FluidContext{1000.0, 1e-6, 1.0, steered, 0, top_drags, top_moves};
+    run.fluid->side_walls_move = side_walls_move;
     run.grains.emplace();
     run.grains->reference_diameter = 1e-3;
     run.grains->reference_density = 3000.0;
@@ -291,12 +309,16 @@ TEST(BedSurface, KnowsWhatDrivesTheWater) {
     const auto observer = make_observer(BedSurfaceKeys{}, run, {world, decomposition, 1e-3});
     return observer->diagnostics().size();
   };
-  const Vec3 down(0.0, 0.0, -9.8), tilted(1.0, 0.0, -9.7);
+  const Vec3 down(0.0, 0.0, -9.8), tilted(1.0, 0.0, -9.7), to_the_left(-1.0, 0.0, -9.7);
   EXPECT_EQ(diagnostic_count(down, false, false, false), 4u);  // heights, depth, radius
   EXPECT_EQ(diagnostic_count(down, false, true, false), 4u);   // a lid at rest
   EXPECT_EQ(diagnostic_count(tilted, false, false, false), 6u);
+  EXPECT_EQ(diagnostic_count(to_the_left, false, false, false), 6u);
   EXPECT_EQ(diagnostic_count(down, true, false, false), 6u);
   EXPECT_EQ(diagnostic_count(down, false, true, true), 6u);
+  side_walls_move = true;  // which take an unknown share
+  EXPECT_EQ(diagnostic_count(tilted, false, false, false), 4u);
+  EXPECT_EQ(diagnostic_count(down, true, false, false), 4u);
 }
 
 // Places that jiggle by up to half a diameter about a drift of half a box in a picture, for some of them.

@@ -1,12 +1,14 @@
 // The plan for many ranks, against counts by hand. tests/system and benchmarks measure the rest.
 #include "driver/cost/performance_model.hpp"
 
+#include "driver/cost/run_cost.hpp"
 #include "driver/cost/sample_case.hpp"
 #include "driver/setup/build_system.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thalweg::driver::performance_model_test {
@@ -34,6 +36,16 @@ TEST(RankCost, SharesOutEverything) {
     EXPECT_NEAR(sum.share_of_cells, 1.0, 1e-12);
     EXPECT_NEAR(sum.share_of_grains, 1.0, 1e-12);
   }
+}
+
+// Not those of as many grains of the median size, which by mass is that of the largest.
+TEST(RunCost, CountsTheLinksOfEachSize) {
+  Case c = wide_bed();
+  const double alike = bytes_of_links(c);
+  beds::Population& grains = c.grains.front();
+  grains.diameters.assign(static_cast<std::size_t>(grains.count), grains.diameter);
+  std::fill_n(grains.diameters.begin(), grains.count / 2, 0.5 * grains.diameter);
+  EXPECT_NEAR(bytes_of_links(c), (0.5 + 0.5 / 4.0) * alike, 1e-9 * alike);
 }
 
 TEST(RankCost, OfOneRankSendsNothing) {

@@ -337,6 +337,20 @@ TEST(Overlaps, OfLinearAndOfElasticContacts) {
   EXPECT_NEAR(8.0 / 15.0 * modulus * std::sqrt(0.25 * d) * std::pow(elastic.in_impact * d, 2.5), energy, 1e-9 * energy);
 }
 
+// By the linear law those of the largest grains: under the pressure p of the bed p d/k of a diameter. A few fine grains
+// change nothing.
+TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
+  Case c = wide_bed();
+  c.contact.normal_stiffness = 555.0;
+  const Overlaps alike = expected_overlaps(c);
+  beds::Population& grains = c.grains[free_populations(c).front()];
+  grains.diameters.assign(static_cast<std::size_t>(grains.count), d);
+  grains.diameters.front() = 0.25 * d;
+  const Overlaps mixed = expected_overlaps(c);
+  EXPECT_NEAR(mixed.in_impact / mixed.speed, alike.in_impact / alike.speed, 0.01 * alike.in_impact / alike.speed);
+  EXPECT_NEAR(mixed.under_weight, alike.under_weight, 0.01 * alike.under_weight);
+}
+
 // The table of benchmarks/validation/simple_cubic_arrays, and second order beyond it.
 TEST(SlowDrag, IsThatOfTheValidation) {
   EXPECT_NEAR(slow_drag_error(10.0, false).among_others, -0.044, 1e-12);

@@ -12,6 +12,7 @@ system: resolved
 name: a run
 domain: {size: [0.1, 0.02, 0.1], spacing: 0.001}
 fluid: {kinematic_viscosity: 1e-06, collision: bgk}
+gravity: {magnitude: 9.81, mode: full}
 grains:
   - {diameter: 0.005, density: 2550, placement: {pattern: random, seed: 1}}
   - {diameter: 0.004, density: 2550, contact: {friction: 0.3}}
@@ -72,20 +73,25 @@ TEST(CaseChanges, WhatTheCheckpointContainsCannotBeChanged) {
            {"system: resolved", "system: grains"},
            {"size: [0.1, 0.02, 0.1]", "size: [0.1, 0.02, 0.2]"},
            {"spacing: 0.001", "spacing: 0.0005"},
+           {"mode: full", "mode: reduced"},
            {"  - {diameter: 0.004, density: 2550, contact: {friction: 0.3}}\n", ""}})
     EXPECT_FALSE(refused(with(old_text, new_text)).empty()) << new_text;
   for (const auto& [old_text, new_text] : std::vector<std::pair<std::string, std::string>>{
-           {"a run", "the same run"}, {"1e-06", "2e-06"}, {"friction: 0.3", "friction: 0.4"}})
+           {"a run", "the same run"}, {"1e-06", "2e-06"}, {"friction: 0.3", "friction: 0.4"}, {"9.81", "9.8"}})
     EXPECT_TRUE(refused(with(old_text, new_text)).empty()) << new_text;
 }
 
 TEST(CaseChanges, ACheckpointKeepsTheKeysThatCannotBeChanged) {
   const std::string kept = state_of_case(before, false);
   EXPECT_EQ(kept,
-            "system: resolved\ndomain.size: [0.1, 0.02, 0.1]\ndomain.spacing: 0.001\n"
+            "system: resolved\ndomain.size: [0.1, 0.02, 0.1]\ndomain.spacing: 0.001\ngravity.mode: full\n"
             "grains.0.diameter: 0.005\ngrains.0.density: 2550\n"
             "grains.1.diameter: 0.004\ngrains.1.density: 2550\ngrains.1.contact: a section\n");
   EXPECT_TRUE(state_changes(kept, before, false).empty());
+  EXPECT_FALSE(state_changes(kept, with("mode: full", "mode: reduced"), false).empty());
+  std::string earlier = kept;  // of a program that did not keep the mode
+  const std::string mode = "gravity.mode: full\n";
+  EXPECT_TRUE(state_changes(earlier.erase(earlier.find(mode), mode.size()), before, false).empty());
   EXPECT_TRUE(state_changes(kept, with("collision: bgk", "collision: trt"), false).empty());
   const auto denser = state_changes(kept, with("density: 2550, placement", "density: 2650, placement"), false);
   ASSERT_EQ(denser.size(), 1u);
