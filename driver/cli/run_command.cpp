@@ -216,6 +216,7 @@ public:
                   size_of(communicator)} {
     start_point_.changes = changes_since(paths, c, communicator);
     if (!c.grains.empty()) identity_.reference = reference_grain(c);
+    identity_.has_rows = c.output.series.every > 0.0;
     build();
     read_state();
   }

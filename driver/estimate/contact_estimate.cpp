@@ -67,8 +67,9 @@ void add_overlaps(const Case& c, const beds::Population& grains, const dem::Cont
   for (const double ratio : {1.0, largest_over_smallest(grains)}) {
     const double d = ratio * grains.smallest_diameter();
     const double mass = 0.5 * grains.lightest_mass() * ratio_of_masses(grains, ratio);
-    if (!periodic_axes(c.domain)[2] && !c.disks)
-      found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * d, d) / d);
+    const double width = c.disks ? c.disks->thickness : d;
+    if (!periodic_axes(c.domain)[2])
+      found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * width, d) / d);
     if (!grains.held())
       found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
   }

@@ -5,6 +5,7 @@
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "lbm/walls/law_of_the_wall.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,26 @@ namespace {
 // Limits beyond which plan and case warnings advise a shorter step: docs/stability.md.
 constexpr double accurate_excess = 0.029;
 
-// Fills in the start that check advises: the log law that a flow over grains of this size comes to.
+// The shear velocity (m/s) of the log law that has a mean (m/s) over a depth (m), by bisection: both rise together.
+// roughness(u): m, where the velocity is zero.
+template <typename Roughness>
+double shear_velocity_of_mean(double mean, double depth, const Roughness& roughness) {
+  const auto mean_of = [&](double shear_velocity) {
+    const double ratio = depth / roughness(shear_velocity);
+    return ratio > 1.0 ? shear_velocity / lbm::karman_constant * (std::log(ratio) - 1.0 + 1.0 / ratio) : 0.0;
+  };
+  constexpr int doublings = 60, halvings = 60;
+  double low = 0.0, high = mean;
+  for (int n = 0; n < doublings && mean_of(high) < mean; ++n) high *= 2.0;
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (mean_of(middle) < mean ? low : high) = middle;
+  }
+  return high;
+}
+
+// Fills in the start that check advises: the log law that a turbulent flow over grains of this size comes to, and where
+// the flow has another profile, because it is laminar or drags on the top, the log law of its discharge.
 void fill_in_profile(Case& c) {
   if (!c.initial.fluid.log_profile) return;
   coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
@@ -28,11 +48,19 @@ void fill_in_profile(Case& c) {
   if (open.shear_velocity) profile.shear_velocity.reset();
   if (open.roughness) profile.roughness.reset();
   const FlowEstimate flow = flow_estimate(c);
+  const auto roughness = [&, given = open.roughness ? std::nullopt : profile.roughness](double shear_velocity) {
+    if (given) return *given;
+    return c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, shear_velocity)
+                            : largest_size(c) / roughness_a_diameter;
+  };
   if (open.bed_height) profile.bed_height = settled_height(c);
-  if (open.shear_velocity) profile.shear_velocity = flow.friction_velocity;
-  if (open.roughness)
-    profile.roughness = c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, *profile.shear_velocity)
-                                         : largest_size(c) / roughness_a_diameter;
+  if (open.shear_velocity) {
+    profile.shear_velocity = flow.friction_velocity;
+    if (flow.bulk_velocity > 0.0 && (flow.laminar || c.domain.faces[top].drags()))
+      profile.shear_velocity =
+          shear_velocity_of_mean(flow.bulk_velocity, c.domain.size.z() - *profile.bed_height, roughness);
+  }
+  if (open.roughness) profile.roughness = roughness(*profile.shear_velocity);
 }
 
 }  // namespace

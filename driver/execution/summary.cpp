@@ -58,7 +58,8 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
       .set("largest", diagnostics_as_json(record.largest, units));
   summary.set("largest_from", record.largest_from);
   for (const auto& observer : observers)
-    summary.set(observer->name(), diagnostics_as_json(run_history.results_of(*observer), units));
+    if (observer->every() > 0.0 || identity.has_rows)  // else it has measured nothing
+      summary.set(observer->name(), diagnostics_as_json(run_history.results_of(*observer), units));
   if (!bed.empty()) summary.set("bed", diagnostics_as_json(bed, units));
   summary.set("provenance", as_json(identity.provenance));
   if (identity.reference) units.set("reference_diameter", "m").set("reference_density", "kg/m^3");

@@ -26,6 +26,7 @@ struct RunIdentity {
   double memory_bound_mlups = 0.0;               // rate that the memory bandwidth allows; 0: caches hold the lattice
   std::optional<MemoryUse> memory = {};          // once it has ended in good order
   std::int64_t warnings = 0;                     // about the case, printed when the run begins
+  bool has_rows = true;                          // of the series, with which observers measure that have no interval
   Provenance provenance = {};                    // once the run folder is there
 };
 

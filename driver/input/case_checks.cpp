@@ -339,6 +339,8 @@ void check_observers(const Case& c, const io::YamlDocument& document) {
 
 void check_column(const Case& c, const io::YamlDocument& document) {
   const Vec3 gravity = gravity_vector(c.gravity);
+  if (gravity.y() != 0.0)
+    throw document.error("gravity", "a column of two continua flows along x alone; leave out what gravity has along y");
   at_place(document, "", [&] { check(c.continuum, gravity.x(), -gravity.z()); });
 }
 

@@ -72,6 +72,11 @@ def measured_shields_number(run, start, stop):
             f"{run.folder}: the share of side walls that move does not follow from the hydraulic radius; the bed stress "
             "is that of analysis.stress_balance."
         )
+    if "shields_number" not in run.series and "bed_height" in run.series:
+        raise RunFolderError(
+            f"{run.folder}: analysis.bed_surface has no Shields number where neither a slope nor a held mean velocity nor "
+            "a moving top drives the flow."
+        )
     if "shields_number" not in run.series:
         raise RunFolderError(
             f"{run.folder}: the Shields number of this flow does not follow from its slope alone, but from forces that "

@@ -83,6 +83,7 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
                 ("creep.lower=1", ["creep.lower", "deeper than upper"]),
                 ("domain.spacing=1e-3", ["domain", "has no box"]),
                 ("analysis.transport_rate.from=1", ["analysis", "remove the section"]),
+                ("gravity={vector: [0.4, 0.1, -9.7]}", ["gravity", "along y"]),
                 ("column.speed=1", ["speed"])):
             with self.subTest(setting=setting):
                 self.assert_refused("run", self.case, "--set", setting, words=words)

@@ -314,6 +314,36 @@ TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
   EXPECT_EQ(bulk_friction(50.0), 0.405);
 }
 
+// The mean pressure gradient carries what a slope would drive.
+TEST(FlowEstimate, OfBalancedGravityIsWithoutASlope) {
+  Case c = wide_bed();
+  c.domain.faces[bottom].type = c.domain.faces[top].type = lbm::FaceType::periodic;
+  c.gravity.mode = GravityMode::balanced;
+  EXPECT_NE(flow_estimate(c).drive, FlowCause::slope);
+}
+
+// A log profile that is left to the program, in laminar flow and under a lid, where the flow has another profile.
+TEST(LogProfile, HasTheDischargeOfTheFlow) {
+  for (const lbm::FaceType lid : {lbm::FaceType::free_slip, lbm::FaceType::no_slip})
+    for (const double viscosity : {1e-6, 2e-4}) {
+      Case c = wide_bed();
+      c.domain.faces[top].type = lid;
+      c.fluid.kinematic_viscosity = viscosity;
+      c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.1, .response_time = 1.0};
+      c.initial.fluid.log_profile.emplace();
+      complete(c);
+      const double bed = *c.initial.fluid.log_profile->bed_height, height = c.domain.size.z();
+      const auto start = coupling::initial_fluid(c.initial.fluid, {1, 1, 1}, {true, true, false}, c.domain.spacing);
+      constexpr int heights = 10000;
+      double mean = 0.0;
+      for (int n = 0; n < heights; ++n)
+        mean += start(Vec3(0.0, 0.0, bed + (n + 0.5) / heights * (height - bed))).velocity.x() / heights;
+      // To what the estimate of a turbulent profile leaves out, z_0/H.
+      const double bulk = flow_estimate(c).bulk_velocity;
+      EXPECT_NEAR(mean, bulk, 0.01 * bulk) << viscosity;
+    }
+}
+
 // benchmarks/validation/rebound_in_water: 2 % of a diameter for 555 N/m at 0.3 m/s, here at the speed of a fall.
 TEST(Overlaps, OfLinearAndOfElasticContacts) {
   Case c = wide_bed();
