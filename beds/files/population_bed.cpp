@@ -174,7 +174,8 @@ Vec3 room_for(const Population& population, const PeriodicBox& box) {
 }
 
 // Volume (m^3) of the grains of a solid fraction or a fill. layer: m.
-double wanted_volume(const Population& population, const Vec3& room, double layer) {
+double wanted_volume(const Population& population, const PeriodicBox& box, double layer) {
+  const Vec3 room = room_for(population, box);
   if (population.solid_fraction) return *population.solid_fraction * room.prod();
   const FillKeys& fill = *population.fill;
   const double depth = fill.depth ? *fill.depth : *fill.layers * layer;
@@ -184,19 +185,18 @@ double wanted_volume(const Population& population, const Vec3& room, double laye
         fmt::format("a bed of {:.4g} m is deeper than the {:g} m of its room; give {}, or more room", depth, room.z(),
                     fill.depth ? fmt::format("at most {:g} m", room.z())
                                : fmt::format("at most {:.3g} layers of {:.4g} m", room.z() / layer, layer)));
-  const double settled = population.thickness > 0.0 ? settled_disks : settled_bed;
+  const double settled = settled_fraction(box, layer, population.thickness > 0.0);
   return (1.0 - fill.porosity.value_or(1.0 - settled)) * depth * room.x() * room.y();
 }
 
 // The number of grains that comes as near as possible to the solid fraction or the fill; of mixed sizes to the accuracy
 // of their mean.
 void take_wanted_volume(Population& population, const PeriodicBox& box, std::optional<double> reference_diameter) {
-  const Vec3 room = room_for(population, box);
   constexpr double most = 1e9;
   population.count = 1000;  // a sample, and then nearly all
   for (int pass = 0; pass < 2; ++pass) {
     take_sizes(population);
-    const double wanted = wanted_volume(population, room, reference_diameter.value_or(population.diameter));
+    const double wanted = wanted_volume(population, box, reference_diameter.value_or(population.diameter));
     const double needed = wanted / (population.volume() / static_cast<double>(population.count));
     if (!(needed < most))
       throw KeyError(wanted_by(population),
@@ -204,6 +204,7 @@ void take_wanted_volume(Population& population, const PeriodicBox& box, std::opt
     population.count = std::max<std::int64_t>(1, std::llround(needed));
   }
   population.solid_fraction.reset();
+  if (population.fill) population.settled_porosity = population.fill->porosity;
   population.fill.reset();
 }
 

@@ -11,6 +11,11 @@
 
 namespace thalweg::beds {
 
+double settled_fraction(const PeriodicBox& box, double diameter, bool disks) {
+  if (disks) return settled_disks;
+  return !box.periodic[1] && box.size.y() < 3.0 * diameter ? settled_near_walls : settled_bed;
+}
+
 bool wraps(const PeriodicBox& box, const Region& region, int axis) {
   return box.periodic[axis] && region.upper[axis] - region.lower[axis] >= box.size[axis] * (1.0 - 1e-12);
 }

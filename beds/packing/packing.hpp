@@ -28,8 +28,12 @@ void check_region(const PeriodicBox& box, const Region& region);
 inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
 
 // Solid fraction of a bed that has settled, between random loose and random close packing: 0.55 to 0.64 of spheres,
-// 0.77 to 0.84 of disks.
-inline constexpr double settled_bed = 0.6, settled_disks = 0.8;
+// 0.77 to 0.84 of disks. Between side walls closer than three diameters that of the 969 grains in the flume of Zhang et
+// al. 2022, 18 diameters high.
+inline constexpr double settled_bed = 0.6, settled_disks = 0.8, settled_near_walls = 0.554;
+
+// That of a bed in this box. diameter: m, of a grain that stands for all.
+double settled_fraction(const PeriodicBox& box, double diameter, bool disks);
 
 // Places of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the
 // widest spacing that has enough sites, sites left over spread evenly, each centre moved at random by up to 1 % of a

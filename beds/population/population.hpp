@@ -125,8 +125,9 @@ struct FileFigures {
 
 // Population with the properties that follow from sizes, shape and file (population_bed.hpp).
 struct Population : PopulationKeys {
-  double thickness = 0.0;         // m, of disks; 0: spheres
-  std::vector<double> diameters;  // m, one a grain; empty: all `diameter`, or from a file
+  double thickness = 0.0;                  // m, of disks; 0: spheres
+  std::vector<double> diameters;           // m, one a grain; empty: all `diameter`, or from a file
+  std::optional<double> settled_porosity;  // 1, as its fill says; none: that of settled_fraction() (packing.hpp)
   // This rank's share of the rows of placement.file: grains, and members of clumps one after the other. Their ids count
   // from 0 on through the shares of all ranks.
   std::vector<BedGrain> file;

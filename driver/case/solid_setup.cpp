@@ -111,6 +111,15 @@ dem::PrescribedMotion motion_of(const SolidCase& solid) {
   return solid.motion ? prescribed_motion(*solid.motion) : dem::PrescribedMotion();
 }
 
+bool any_solid_moves(const Case& c) {
+  return std::any_of(c.solids.begin(), c.solids.end(), [](const SolidCase& solid) { return motion_of(solid).moves(); });
+}
+
+double solid_frames_every(const Case& c) {
+  const double grains = c.grains.empty() ? 0.0 : c.output.grains.every, fluid = c.output.fluid.every;
+  return grains > 0.0 && fluid > 0.0 ? std::min(grains, fluid) : std::max(grains, fluid);
+}
+
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time) {
   std::vector<TriangleMesh> surfaces;
   for (const SolidCase& solid : c.solids) {

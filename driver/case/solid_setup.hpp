@@ -29,6 +29,12 @@ std::vector<bodies::SolidShape> solid_shapes(const Case& c);
 // Motion of a solid; it stands still where the case gives none.
 dem::PrescribedMotion motion_of(const SolidCase& solid);
 
+bool any_solid_moves(const Case& c);
+
+// The time between frames of solids that move, s, so that there is one for each of the grains and of the fluid; 0:
+// none. Solids that all stand still have one frame.
+double solid_frames_every(const Case& c);
+
 // The surfaces of all solids at a time (s), in m; spheres as triangles.
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);
 

@@ -3,6 +3,7 @@
 #include "analysis/observers/probes.hpp"
 #include "analysis/observers/tracks.hpp"
 #include "analysis/reach/reach_keys.hpp"
+#include "driver/case/solid_setup.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/supplied_grains.hpp"
@@ -72,6 +73,16 @@ double grain_frames(const Case& c) {
   return bytes;
 }
 
+// Solids that all stand still have one frame (io/vtk/solid_series.cpp).
+double solid_frames(const Case& c) {
+  const double every = solid_frames_every(c);
+  if (c.solids.empty() || every == 0.0) return 0.0;
+  double bytes = 0.0;
+  for (const TriangleMesh& mesh : solid_surfaces(c, 0.0))
+    bytes += 24.0 * static_cast<double>(mesh.points.size()) + 40.0 * static_cast<double>(mesh.triangles.size());
+  return bytes * (any_solid_moves(c) ? times_in(c, every) : 1.0);
+}
+
 double checkpoints(const Case& c) {
   const io::CheckpointOutputKeys& keys = c.output.checkpoint;
   const double most = static_cast<double>(keys.keep) + 1.0;
@@ -114,14 +125,19 @@ std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
 
-DiskSpace disk_space(const Case& c) { return {fluid_frames(c), grain_frames(c), checkpoints(c), records(c)}; }
+DiskSpace disk_space(const Case& c) {
+  return {fluid_frames(c), grain_frames(c), solid_frames(c), checkpoints(c), records(c)};
+}
 
 std::string disk_line(const DiskSpace& space, double free) {
   std::string line = "disk       at most about " + bytes_text(space.total());
   if (space.total() > free) line += fmt::format(", more than the {} that are free in this folder", bytes_text(free));
   line += ":";
-  const std::pair<const char*, double> parts[] = {
-      {"fluid", space.fluid}, {"grains", space.grains}, {"checkpoints", space.checkpoints}, {"records", space.records}};
+  const std::pair<const char*, double> parts[] = {{"fluid", space.fluid},
+                                                  {"grains", space.grains},
+                                                  {"solids", space.solids},
+                                                  {"checkpoints", space.checkpoints},
+                                                  {"records", space.records}};
   const char* separator = " ";
   for (const auto& [name, bytes] : parts) {
     if (bytes <= 0.0) continue;

@@ -9,10 +9,10 @@ namespace thalweg::driver {
 
 // Bytes, at the end of the run. VTK files are compressed; what is estimated is without, the most they can take.
 struct DiskSpace {
-  double fluid, grains;  // all frames
-  double checkpoints;    // those kept, and the one being written
-  double records;        // tracks, probes and the reach
-  double total() const { return fluid + grains + checkpoints + records; }
+  double fluid, grains, solids;  // all frames
+  double checkpoints;            // those kept, and the one being written
+  double records;                // tracks, probes and the reach
+  double total() const { return fluid + grains + solids + checkpoints + records; }
 };
 DiskSpace disk_space(const Case& c);
 

@@ -94,10 +94,12 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.cells = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
-  cost.grain_steps = static_cast<double>(grain_rows(c) * grain_steps(c)) * cost.steps;
+  const double rows = static_cast<double>(grain_rows(c)), most = static_cast<double>(most_rows(c));
+  const double growth = rows > 0.0 ? 0.5 * (rows + most) / rows : 1.0;  // in the mean, of grains that are supplied
+  cost.grain_steps = growth * rows * static_cast<double>(grain_steps(c)) * cost.steps;
   const double traffic = cost.cell_updates * cell_cost * bytes_per_cell_update(bytes_per_value(c));
   cost.core_seconds =
-      traffic / bandwidth + cost.steps * link_count(c) * link_seconds +
+      traffic / bandwidth + cost.steps * growth * link_count(c) * link_seconds +
       cost.grain_steps / (c.system == SystemKind::model_fluid ? model_fluid_steps_per_second : grain_steps_per_second);
   return cost;
 }

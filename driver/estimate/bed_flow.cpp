@@ -116,11 +116,15 @@ double depth_of(const Case& c, double hydraulic_radius) {
 }
 
 double settled_fraction(const Case& c) {
-  if (c.disks) return beds::settled_disks;
-  const bool between_walls =
-      c.domain.faces[y_low].type != lbm::FaceType::periodic && c.domain.faces[y_high].type != lbm::FaceType::periodic;
-  const bool narrow = !c.grains.empty() && c.domain.size.y() < 3.0 * reference_grain(c).diameter;
-  return between_walls && narrow ? 0.554 : beds::settled_bed;
+  if (c.grains.empty()) return beds::settled_bed;
+  const double usual = beds::settled_fraction(grain_box(c), reference_grain(c).diameter, c.disks.has_value());
+  double solid = 0.0, bed = 0.0;  // m^3
+  for (const beds::Population& population : c.grains) {
+    const double volume = population.volume();
+    solid += volume;
+    bed += volume / (population.settled_porosity ? 1.0 - *population.settled_porosity : usual);
+  }
+  return bed > 0.0 ? solid / bed : usual;
 }
 
 }  // namespace thalweg::driver

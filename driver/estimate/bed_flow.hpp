@@ -64,8 +64,7 @@ double hydraulic_radius(const Case& c, double depth);
 // m, of the flow that has this hydraulic radius (m); infinite where none is so deep.
 double depth_of(const Case& c, double hydraulic_radius);
 
-// Solid fraction of a settled bed: 0.6 (random loose to close packing is 0.55 to 0.64); 0.554 between side walls closer
-// than three diameters, as of the 969 grains in the flume of Zhang et al. 2022, 18 diameters high; 0.8 of disks.
+// Solid fraction of a settled bed: that of beds::settled_fraction(), or what a fill says of its population.
 double settled_fraction(const Case& c);
 
 }  // namespace thalweg::driver

@@ -84,17 +84,6 @@ void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string
         keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, keys.precision, continue_from_));
 }
 
-// The time between frames of solids that move, s, so that there is one for each of the grains and of the fluid; 0:
-// none.
-static double solid_frames_every(const Case& c) {
-  const double grains = c.grains.empty() ? 0.0 : c.output.grains.every, fluid = c.output.fluid.every;
-  return grains > 0.0 && fluid > 0.0 ? std::min(grains, fluid) : std::max(grains, fluid);
-}
-
-static bool any_solid_moves(const Case& c) {
-  return std::any_of(c.solids.begin(), c.solids.end(), [](const SolidCase& solid) { return motion_of(solid).moves(); });
-}
-
 // Solids that all stand still have one frame.
 void RunOutput::begin_solids() {
   if (case_.solids.empty() || !(solid_frames_every(case_) > 0.0)) return;

@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace thalweg::driver {
 
@@ -79,15 +81,19 @@ void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
                               flow.friction_velocity));
 }
 
-// The least share of the floor that the region of a population covers; the grains spread from there over all of it.
+// The share of the floor that the regions of the populations cover together, as far as they lie side by side; the
+// grains spread from there over all of it.
 double placed_share(const Case& c) {
-  double share = 1.0;
-  for (const beds::Population& population : c.grains)
-    if (const auto& region = population.placement.region) {
-      const Vec3 sides = region->upper - region->lower;
-      share = std::min(share, sides.x() * sides.y() / (c.domain.size.x() * c.domain.size.y()));
-    }
-  return share;
+  using Sides = std::array<double, 4>;  // m
+  std::set<Sides> covered;
+  for (const beds::Population& population : c.grains) {
+    const auto& region = population.placement.region;
+    if (!region) return 1.0;
+    covered.insert({region->lower.x(), region->lower.y(), region->upper.x(), region->upper.y()});
+  }
+  double area = 0.0;
+  for (const Sides& sides : covered) area += (sides[2] - sides[0]) * (sides[3] - sides[1]);
+  return std::min(1.0, area / (c.domain.size.x() * c.domain.size.y()));
 }
 
 // Empty where the grains make no bed of at least their diameter.

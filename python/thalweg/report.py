@@ -159,7 +159,7 @@ def describe_surface(report, name, title, surface):
     report.numbers[name] = {"bed_height": surface, "depth": depth}
     place = f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above"
     how = "by the forces on the water, as measured"
-    if run.driven_by_slope:
+    if run.driven_by_slope and not bed.is_obstructed(run):
         how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
     try:
         shields = float(
