@@ -109,17 +109,19 @@ std::vector<std::string> check_of(const Command& command, const Case& c) {
   return about_case(command.path, [&] { return check_report(c, measure_bandwidth()); });
 }
 
-Case case_of(const Command& command) {
+std::vector<std::string> settings_of(const Command& command) {
   std::vector<std::string> settings = command.settings;
-  if (command.until) settings.push_back(fmt::format("run.until={:.17g}", *command.until));
-  return read_case(command.path, settings);
+  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
+  return settings;
 }
+
+Case case_of(const Command& command) { return read_case(command.path, settings_of(command)); }
 
 // The report, and the refusal of what this machine has not the memory for: it is said last, with the report to go by.
 void check(const Command& command) {
   const Case c = case_of(command);
   if (command.solve) {
-    std::fputs(joined(solution_report(c, command.path)).c_str(), stdout);
+    std::fputs(joined(solution_report(c, command.path, settings_of(command))).c_str(), stdout);
     return;
   }
   const auto json = [&] { return about_case(command.path, [&] { return check_json(c, measure_bandwidth()); }); };

@@ -23,10 +23,12 @@ static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
   visit.real(
       "shear_velocity", profile.shear_velocity,
       {.unit = "m/s",
-       .meaning = "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness); default: that of the flow that "
-                  "develops",
-       .above = 0.0,
+       .meaning =
+           "u(z) = shear_velocity / 0.41 ln((z - bed_height) / roughness), negative towards -x; default: that of "
+           "the flow that develops",
        .example = 0.08});
+  visit.require(profile.shear_velocity != 0.0, "shear_velocity",
+                "without a shear velocity the fluid is at rest; give one in m/s, or initial.fluid: rest");
   visit.real("roughness", profile.roughness,
              {.unit = "m",
               .meaning = "height above the bed at which the velocity is zero; default: a fifteenth of the largest "
@@ -62,7 +64,7 @@ using InitialFluid = std::function<FluidInitialState(const Vec3&)>;
 
 InitialFluid with_perturbation(const LogProfileKeys& profile, const InitialFluid& calm, const Index3& cells,
                                const std::array<bool, 3>& periodic, double spacing) {
-  const double strength = *profile.shear_velocity * profile.perturbation->amplitude;
+  const double strength = std::abs(*profile.shear_velocity) * profile.perturbation->amplitude;
   const lbm::NoiseBox box{cells, periodic, *profile.bed_height / spacing};
   const lbm::SolenoidalNoise noise(box, static_cast<std::uint64_t>(profile.perturbation->seed));
   return [calm, noise, strength, spacing](const Vec3& position) {

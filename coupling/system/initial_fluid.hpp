@@ -23,7 +23,7 @@ struct PerturbationKeys {
 // out any of the three; what reads it fills them in before initial_fluid() is called.
 struct LogProfileKeys {
   std::optional<double> bed_height;      // m above the bottom
-  std::optional<double> shear_velocity;  // m/s
+  std::optional<double> shear_velocity;  // m/s, negative towards -x
   std::optional<double> roughness;       // m, the height where the velocity is zero
   std::optional<PerturbationKeys> perturbation;
   bool operator==(const LogProfileKeys&) const = default;

@@ -115,9 +115,18 @@ bool any_solid_moves(const Case& c) {
   return std::any_of(c.solids.begin(), c.solids.end(), [](const SolidCase& solid) { return motion_of(solid).moves(); });
 }
 
-double solid_frames_every(const Case& c) {
-  const double grains = c.grains.empty() ? 0.0 : c.output.grains.every, fluid = c.output.fluid.every;
-  return grains > 0.0 && fluid > 0.0 ? std::min(grains, fluid) : std::max(grains, fluid);
+std::set<double> solid_frames_every(const Case& c) {
+  std::set<double> intervals;
+  if (!c.grains.empty()) {
+    intervals.insert(c.output.grains.every);
+    for (const io::NamedGrainOutputKeys& part : c.output.grain_parts) intervals.insert(part.every);
+  }
+  if (has_fluid(c)) {
+    intervals.insert(c.output.fluid.every);
+    for (const io::NamedFluidOutputKeys& part : c.output.fluid_parts) intervals.insert(part.every);
+  }
+  intervals.erase(0.0);
+  return intervals;
 }
 
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time) {

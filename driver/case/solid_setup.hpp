@@ -8,6 +8,7 @@
 #include "driver/case/case.hpp"
 #include "io/text/yaml_document.hpp"
 
+#include <set>
 #include <vector>
 
 namespace thalweg::driver {
@@ -31,9 +32,9 @@ dem::PrescribedMotion motion_of(const SolidCase& solid);
 
 bool any_solid_moves(const Case& c);
 
-// The time between frames of solids that move, s, so that there is one for each of the grains and of the fluid; 0:
-// none. Solids that all stand still have one frame.
-double solid_frames_every(const Case& c);
+// The times between frames of grains and of the fluid, s, each of which has a frame of the solids that move; empty:
+// there are none. Solids that all stand still have one frame.
+std::set<double> solid_frames_every(const Case& c);
 
 // The surfaces of all solids at a time (s), in m; spheres as triangles.
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);

@@ -75,12 +75,15 @@ double grain_frames(const Case& c) {
 
 // Solids that all stand still have one frame (io/vtk/solid_series.cpp).
 double solid_frames(const Case& c) {
-  const double every = solid_frames_every(c);
-  if (c.solids.empty() || every == 0.0) return 0.0;
+  const std::set<double> intervals = solid_frames_every(c);
+  if (c.solids.empty() || intervals.empty()) return 0.0;
+  double frames = any_solid_moves(c) ? 0.0 : 1.0;
+  if (any_solid_moves(c))
+    for (const double every : intervals) frames += times_in(c, every);
   double bytes = 0.0;
   for (const TriangleMesh& mesh : solid_surfaces(c, 0.0))
     bytes += 24.0 * static_cast<double>(mesh.points.size()) + 40.0 * static_cast<double>(mesh.triangles.size());
-  return bytes * (any_solid_moves(c) ? times_in(c, every) : 1.0);
+  return bytes * frames;
 }
 
 double checkpoints(const Case& c) {

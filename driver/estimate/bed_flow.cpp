@@ -30,12 +30,25 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
 
+// False for free grains that are no heavier than the fluid, and float.
+bool makes_a_bed(const Case& c, const beds::Population& population) {
+  return population.held() || !has_fluid(c) || population.density > c.fluid.density * (1.0 + neutral_density);
+}
+
+// m^3.
+double volume_in_the_bed(const Case& c) {
+  double volume = 0.0;
+  for (const beds::Population& population : c.grains)
+    if (makes_a_bed(c, population)) volume += population.volume();
+  return volume;
+}
+
 double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBelow& solids) {
   const PeriodicBox box = grain_box(c);
   const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
   std::vector<double> spheres = analysis::union_below(box, obstacles.spheres, layers);
   std::vector<double> filled = solids ? solids(layers) : std::vector<double>(spheres.size(), 0.0);
-  const double grains = grain_volume(c) - obstacles.volume_of_grains;
+  const double grains = volume_in_the_bed(c) - obstacles.volume_of_grains;
   analysis::VolumeBelow below{spheres, box.size.z() / layers, box.size.x() * box.size.y(), filled};
   constexpr double rounding = 1e-9;
   if (grains <= rounding * obstacles.volume_of_grains)
@@ -60,8 +73,7 @@ FlowNumbers flow_numbers(const Case& c) {
   flow.slope = gravity.x() / -gravity.z();
   flow.bed_height = settled_height(c);
   flow.depth = c.domain.size.z() - flow.bed_height;
-  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity ||
-      side_walls_move(c))
+  if (flow.depth <= 0.0 || gravity.x() <= 0.0 || !periodic_axes(c.domain)[0] || c.fluid.mean_velocity || walls_drive(c))
     return flow;
   flow.side_walls = side_walls(c);
   flow.top_drags = c.domain.faces[top].drags();
@@ -84,7 +96,7 @@ double settled_height(const Case& c) {
   const SolidsBelow solids = solids_below(c);
   if (solids || !obstacles.spheres.empty()) return settled_height(c, obstacles, solids);
   const double width = c.disks ? c.disks->thickness : c.domain.size.y();
-  return grain_volume(c) / (settled_fraction(c) * c.domain.size.x() * width);
+  return volume_in_the_bed(c) / (settled_fraction(c) * c.domain.size.x() * width);
 }
 
 bool drives_flow(const Case& c, int axis) {
@@ -104,6 +116,11 @@ bool side_walls_move(const Case& c) {
   return moves(y_low) || moves(y_high);
 }
 
+bool walls_drive(const Case& c) {
+  const coupling::FaceKeys& lid = c.domain.faces[top];
+  return side_walls_move(c) || (lid.type == lbm::FaceType::moving && lid.velocity.x() != 0.0);
+}
+
 double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
 
 double hydraulic_radius(const Case& c, double depth) {
@@ -120,6 +137,7 @@ double settled_fraction(const Case& c) {
   const double usual = beds::settled_fraction(grain_box(c), reference_grain(c).diameter, c.disks.has_value());
   double solid = 0.0, bed = 0.0;  // m^3
   for (const beds::Population& population : c.grains) {
+    if (!makes_a_bed(c, population)) continue;
     const double volume = population.volume();
     solid += volume;
     bed += volume / (population.settled_porosity ? 1.0 - *population.settled_porosity : usual);

@@ -15,7 +15,7 @@ inline constexpr double neutral_density = 1e-6;
 // between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
 // gravity along the bed, g times the sine of its angle. Under a top that drags, H is half the depth: what lies above
 // the middle weighs on the top. Not a number where a case lacks what a number needs: without a slope down along x,
-// which is periodic, and beside side walls that move along x there is no Shields number.
+// which is periodic, and where the top or a side wall moves along x there is no Shields number.
 struct FlowNumbers {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double slope = unknown;              // tangent of the bed's angle
@@ -41,8 +41,9 @@ double slope_for(const FlowNumbers& flow, double shields);
 // between near walls 0.5).
 inline constexpr double loosest_bed = 0.4;
 
-// m, of the grains settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without gravity
-// across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no bed.
+// m, of the grains that sink, settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without
+// gravity across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no
+// bed.
 double settled_height(const Case& c);
 
 // True if gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls balance it by
@@ -54,6 +55,9 @@ int side_walls(const Case& c);
 
 // True if one of them moves along x, and takes no share that follows from the hydraulic radius.
 bool side_walls_move(const Case& c);
+
+// True if the top or a side wall moves along x, so that not the slope alone drives the water.
+bool walls_drive(const Case& c);
 
 // m, of a depth (m): half of it under a top that drags and holds the other half.
 double held_by_the_bed(const Case& c, double depth);

@@ -8,6 +8,7 @@
 #include "driver/estimate/reference_grain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -148,7 +149,8 @@ std::optional<DryRestitution> dry_restitution(const Case& c) {
 
 double stress_ratio_at_base(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
-  if (c.grains.empty() || side_walls(c) > 0 || periodic_axes(c.domain)[2] || gravity.x() <= 0.0 || gravity.z() >= 0.0)
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  if (c.grains.empty() || side_walls(c) > 0 || !periodic[0] || periodic[2] || gravity.x() == 0.0 || gravity.z() >= 0.0)
     return 0.0;
   if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
   const ReferenceGrain grain = reference_grain(c);
@@ -157,8 +159,18 @@ double stress_ratio_at_base(const Case& c) {
   const double water = has_fluid(c) ? c.fluid.density : 0.0;
   const double excess = settled_fraction(c) * (grain.density - water);
   if (excess <= neutral_density * water) return 0.0;
-  return (water * held_by_the_bed(c, depth) + (water + excess) * height) * gravity.x() /
+  return (water * held_by_the_bed(c, depth) + (water + excess) * height) * std::abs(gravity.x()) /
          (excess * height * -gravity.z());
+}
+
+double bulk_friction(const Case& c) {
+  double volume = 0.0, friction = 0.0;  // m^3
+  for (const std::size_t p : free_populations(c)) {
+    const std::optional<beds::MaterialKeys>& own = c.grains[p].contact;
+    volume += c.grains[p].volume();
+    friction += c.grains[p].volume() * (own ? own->friction.value_or(c.contact.friction) : c.contact.friction);
+  }
+  return bulk_friction(friction / volume);
 }
 
 double bulk_friction(double friction) {

@@ -54,4 +54,7 @@ double stress_ratio_at_base(const Case& c);
 // Chialvo, Sun and Sundaresan (2012), table I, linear between its entries.
 double bulk_friction(double friction);
 
+// That of the free grains, of the mean of their coefficients by volume.
+double bulk_friction(const Case& c);
+
 }  // namespace thalweg::driver

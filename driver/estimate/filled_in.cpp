@@ -50,15 +50,15 @@ void fill_in_profile(Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   const auto roughness = [&, given = open.roughness ? std::nullopt : profile.roughness](double shear_velocity) {
     if (given) return *given;
-    return c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, shear_velocity)
+    return c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, std::abs(shear_velocity))
                             : largest_size(c) / roughness_a_diameter;
   };
   if (open.bed_height) profile.bed_height = settled_height(c);
   if (open.shear_velocity) {
-    profile.shear_velocity = flow.friction_velocity;
+    profile.shear_velocity = flow.way * flow.friction_velocity;
     if (flow.bulk_velocity > 0.0 && (flow.laminar || c.domain.faces[top].drags()))
       profile.shear_velocity =
-          shear_velocity_of_mean(flow.bulk_velocity, c.domain.size.z() - *profile.bed_height, roughness);
+          flow.way * shear_velocity_of_mean(flow.bulk_velocity, c.domain.size.z() - *profile.bed_height, roughness);
   }
   if (open.roughness) profile.roughness = roughness(*profile.shear_velocity);
 }

@@ -90,7 +90,8 @@ void consider_start(const Case& c, FlowEstimate& flow) {
   if (!start.log_profile || !is_complete(*start.log_profile)) return;
   const double height = (c.domain.size.z() - *start.log_profile->bed_height) / *start.log_profile->roughness;
   if (height > 1.0)
-    consider(flow, *start.log_profile->shear_velocity / karman_constant * std::log(height), FlowCause::initial_fluid);
+    consider(flow, std::abs(*start.log_profile->shear_velocity) / karman_constant * std::log(height),
+             FlowCause::initial_fluid);
 }
 
 // A slope adds no more than g_x times the time of the run to the speed of the start.
@@ -199,9 +200,11 @@ FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
 
 // Of an inlet upstream. A flow that nothing holds back keeps the profile of its inlet and has no friction velocity.
 FlowEstimate flow_of_inlet(const Case& c, const Channel& channel) {
-  const coupling::FaceKeys& inlet = c.domain.faces[x_low];
-  if (inlet.type != lbm::FaceType::velocity_inlet || !(inlet.velocity.x() > 0.0) || !channel.is_held()) return {};
-  const double mean = inlet.velocity.x() * c.domain.size.z() / channel.depth;
+  const bool from_the_right = c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet;
+  const coupling::FaceKeys& inlet = c.domain.faces[from_the_right ? x_high : x_low];
+  const double inwards = from_the_right ? -inlet.velocity.x() : inlet.velocity.x();
+  if (inlet.type != lbm::FaceType::velocity_inlet || !(inwards > 0.0) || !channel.is_held()) return {};
+  const double mean = inwards * c.domain.size.z() / channel.depth;
   FlowEstimate flow = flow_of_discharge(mean, FlowCause::inlet, channel);
   flow.spin_up = inlet.recycling_plane ? time_to_adapt(flow, channel) : c.domain.size.x() / mean;
   return flow;
@@ -227,6 +230,15 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
   });
   flow.spin_up = velocity * depth / (flow.friction_velocity * flow.friction_velocity);
   return flow;
+}
+
+// Along x: 1, or -1.
+double way_of(const Case& c, FlowCause drive) {
+  const auto sign = [](double velocity) { return velocity < 0.0 ? -1.0 : 1.0; };
+  if (drive == FlowCause::slope) return sign(gravity_vector(c.gravity).x());
+  if (drive == FlowCause::mean_velocity) return sign(c.fluid.mean_velocity->velocity);
+  if (drive == FlowCause::moving_face) return sign(c.domain.faces[top].velocity.x());
+  return drive == FlowCause::inlet && c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet ? -1.0 : 1.0;
 }
 
 void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
@@ -327,6 +339,7 @@ FlowEstimate flow_estimate(const Case& c) {
       return a.friction_velocity < b.friction_velocity;
     });
     flow.depth = channel.depth;
+    flow.way = way_of(c, flow.drive);
     for (const FlowEstimate& drive : drives) consider(flow, drive.speed, drive.cause);
   } else if (c.fluid.mean_velocity) {
     consider(flow, std::abs(c.fluid.mean_velocity->velocity), FlowCause::mean_velocity);

@@ -86,12 +86,15 @@ void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string
 
 // Solids that all stand still have one frame.
 void RunOutput::begin_solids() {
-  if (case_.solids.empty() || !(solid_frames_every(case_) > 0.0)) return;
+  if (case_.solids.empty() || solid_frames_every(case_).empty()) return;
   solids_.emplace(communicator_, folder_.path(), continue_from_);
   if (!continue_from_ && !any_solid_moves(case_)) write_solids(system_.time(), system_.step());
 }
 
+// Once a step, for which frames of several kinds may be due.
 void RunOutput::write_solids(double time, std::int64_t step) {
+  if (solids_step_ == step) return;
+  solids_step_ = step;
   solids_->write(time, step, solid_surfaces(case_, time));
 }
 
@@ -109,8 +112,9 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
     plan.outputs.push_back({"fluid output", Schedule(every, time_step),
                             [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
   if (solids_ && any_solid_moves(case_))
-    plan.outputs.push_back({"solid output", Schedule(solid_frames_every(case_), time_step),
-                            [this](const Snapshot& snapshot) { write_solids(snapshot.time, snapshot.step); }});
+    for (const double every : solid_frames_every(case_))
+      plan.outputs.push_back({"solid output", Schedule(every, time_step),
+                              [this](const Snapshot& snapshot) { write_solids(snapshot.time, snapshot.step); }});
   // Written together with the health checks, so that a broken state is never written.
   if (!records_.empty())
     plan.outputs.push_back({"records", Schedule(loop::TimeLoop::steps_between_health_checks * time_step, time_step),

@@ -68,6 +68,7 @@ private:
   std::vector<std::pair<double, io::GrainSeries>> grains_;  // each with the time between its frames, s
   std::vector<std::pair<double, io::FluidSeries>> fluid_;   // the same for the fluid
   std::optional<io::SolidSeries> solids_;                   // where there are frames of grains or fluid
+  std::optional<std::int64_t> solids_step_;                 // of its latest frame in this session
   struct ObserverRecords {
     analysis::Observer* observer;
     io::RecordParts parts;

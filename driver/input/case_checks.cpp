@@ -110,7 +110,7 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                            c.initial.fluid.linear_profile->velocity.norm());
   if (!c.initial.fluid.log_profile) return;
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
-  if (c.filled_in.profile.shear_velocity && !(*profile.shear_velocity > 0.0))
+  if (c.filled_in.profile.shear_velocity && *profile.shear_velocity == 0.0)
     throw document.error("initial.fluid.log_profile",
                          "nothing drives the water along the bed, so that its shear velocity does not follow from the "
                          "case; give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
@@ -125,10 +125,10 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
     throw document.error(
         "initial.fluid.log_profile.bed_height",
         fmt::format("no fluid is left above the bed; give a height in m below {:.6g}", c.domain.size[2]));
-  check_lattice_velocity(
-      c, document, "initial.fluid.log_profile.shear_velocity",
-      *profile.shear_velocity * (std::log(depth / *profile.roughness) / lbm::karman_constant +
-                                 (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
+  check_lattice_velocity(c, document, "initial.fluid.log_profile.shear_velocity",
+                         std::abs(*profile.shear_velocity) *
+                             (std::log(depth / *profile.roughness) / lbm::karman_constant +
+                              (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
 // The largest speed (m/s) that a grain of a rigid population can have anywhere in its region or the box.

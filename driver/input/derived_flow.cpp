@@ -131,6 +131,11 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
     throw document.error("flow",
                          "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "
                          "periodic");
+  if (c.flow->shields_number && walls_drive(c))
+    throw document.error(
+        "flow.shields_number",
+        "a top or side wall that moves along x drives the water, too, and the stress on the bed does not "
+        "follow from the slope; leave out this key, and give gravity.slope");
   const ReferenceGrain grain = reference_grain(c);
   const double excess = grain.density / c.fluid.density - 1.0, bed = settled_height(c);
   if (excess <= neutral_density)

@@ -156,7 +156,7 @@ void add_stress_at_base(const Case& c, Lines& lines) {
     lines.push_back(fmt::format(
         "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; grains of this "
         "friction sustain about {:.3g}",
-        ratio, bulk_friction(c.contact.friction)));
+        ratio, bulk_friction(c)));
 }
 
 }  // namespace

@@ -26,13 +26,15 @@ Solution solve(const Case& c) {
   return solution;
 }
 
-std::vector<std::string> solution_report(const Case& c, const std::string& path) {
+std::vector<std::string> solution_report(const Case& c, const std::string& path,
+                                         const std::vector<std::string>& settings) {
   const Solution solution = solve(c);
   std::vector<std::string> lines;
   for (const Change& change : solution.changes)
     lines.push_back(fmt::format("{:<10} {}: {}", lines.empty() ? "change" : "", change.key, change.value));
   if (!solution.changes.empty()) {
     std::string command = "thalweg check " + shell_word(path);
+    for (const std::string& setting : settings) command += " --set " + shell_word(setting);
     for (const Change& change : solution.changes)
       command += " --set " + shell_word(fmt::format("{}={}", change.key, change.value));
     lines.push_back("to try     " + command);

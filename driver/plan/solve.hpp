@@ -17,7 +17,8 @@ struct Solution {
 // left.
 Solution solve(const Case& c);
 
-// Lines that say so, with the changes as options to paste.
-std::vector<std::string> solution_report(const Case& c, const std::string& path);
+// Lines that say so, with the changes as options to paste behind those that the case was read with (KEY=VALUE).
+std::vector<std::string> solution_report(const Case& c, const std::string& path,
+                                         const std::vector<std::string>& settings);
 
 }  // namespace thalweg::driver

@@ -170,17 +170,17 @@ Change slope_change(const Case& c, double slope) {
                          [](Case& other, double to) { other.gravity.slope = slope_for(flow_numbers(other), to); });
   }
   if (!c.gravity.vector)
-    return number_change("gravity.slope", slope, 2, Rounding::down,
+    return number_change("gravity.slope", slope, 2, slope < 0.0 ? Rounding::up : Rounding::down,
                          [](Case& other, double to) { other.gravity.slope = to; });
   const Vec3 gravity = *c.gravity.vector;
-  const std::string along = at_most_text(slope * -gravity.z(), 2);
+  const std::string along = (slope < 0.0 ? at_least_text : at_most_text)(slope * -gravity.z(), 2);
   return word_change("gravity.vector", fmt::format("[{}, {:.9g}, {:.9g}]", along, gravity.y(), gravity.z()),
                      [x = std::stod(along)](Case& other) { other.gravity.vector->x() = x; });
 }
 
 Warnings sliding_bed(const Case& c) {
   if (c.system != SystemKind::grains && c.system != SystemKind::resolved) return {};
-  const double ratio = stress_ratio_at_base(c), held = bulk_friction(c.contact.friction);
+  const double ratio = stress_ratio_at_base(c), held = bulk_friction(c);
   if (ratio <= held) return {};
   const double slope = gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio;
   return {

@@ -81,13 +81,14 @@ Warnings short_run(const Case& c) {
            advice, "a later run.until or a developed start (initial)"}};
 }
 
-// s, from which on the flow is that of its drive: from rest once it has developed, from a profile after one turnover of
-// the largest eddies.
+// s, from which on the flow is that of its drive: once gravity has its full value, from rest when it has developed,
+// from a profile after one turnover of the largest eddies.
 double developed_after(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
-  if (flow.drive == FlowCause::none || c.initial.takes(InitialField::fluid)) return 0.0;
-  if (!starts_developed(c)) return flow.spin_up;
-  return flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
+  if (flow.drive == FlowCause::none) return 0.0;
+  if (c.initial.takes(InitialField::fluid)) return c.run.ramp;
+  if (!starts_developed(c)) return c.run.ramp + flow.spin_up;
+  return c.run.ramp + (flow.laminar ? 0.0 : flow.depth / flow.friction_velocity);
 }
 
 Warnings early_averages(const Case& c) {
@@ -113,7 +114,8 @@ Warnings early_averages(const Case& c) {
 
 // Water at rest that an inlet sets going in the first step is a water hammer.
 Warnings sudden_inlet(const Case& c) {
-  const coupling::FaceKeys& inlet = c.domain.faces[x_low];
+  const bool from_the_right = c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet;
+  const coupling::FaceKeys& inlet = c.domain.faces[from_the_right ? x_high : x_low];
   const bool at_rest = c.initial.fluid.count() == 0 && !c.initial.takes(InitialField::fluid);
   if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains(c)) return {};
   std::vector<Advice> advice = developed_start(c, flow_estimate(c));
@@ -158,16 +160,16 @@ Warnings unsettled_grains(const Case& c) {
 Warnings other_start(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
-  const double given = *c.initial.fluid.log_profile->shear_velocity, ratio = given / flow.friction_velocity;
+  const double given = *c.initial.fluid.log_profile->shear_velocity, driven = flow.way * flow.friction_velocity,
+               ratio = given / driven;
   constexpr double meant_to_be_slow = 0.25;  // in a run that is too short for the flow anyway
   if ((flow.still_gaining && ratio < meant_to_be_slow) || (ratio >= 0.8 && ratio <= 1.25)) return {};
-  const Change start =
-      exact_change("initial.fluid.log_profile.shear_velocity", flow.friction_velocity, 3, [](Case& other, double to) {
-        other.initial.fluid.log_profile->shear_velocity = to;
-        other.filled_in.profile.shear_velocity = false;
-      });
+  const Change start = exact_change("initial.fluid.log_profile.shear_velocity", driven, 3, [](Case& other, double to) {
+    other.initial.fluid.log_profile->shear_velocity = to;
+    other.filled_in.profile.shear_velocity = false;
+  });
   return {{fmt::format("The flow starts with a shear velocity of {:.3g} m/s and is driven ({}) towards {:.3g} m/s",
-                       given, words_of(flow.drive), flow.friction_velocity),
+                       given, words_of(flow.drive), driven),
            {{{start}, {}}},
            "a start with the shear velocity it is driven towards, and the step that suits it"}};
 }

@@ -164,17 +164,22 @@ def largest_speed_of(speed, diameter):
     return float(np.quantile(moving, 0.9) if len(moving) else diameter)
 
 
+def typical_diameter(run, frame):
+    """m, of the grains of a frame, or of the run's where the frame has none."""
+    return np.median(frame.diameter) if len(frame) else run.diameter
+
+
 def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, scale=None):
     """A figure of the grains, coloured by speed, before the fluid's speed in the middle plane (`fluid`: its frame).
     largest_speed, largest_flow: ends of the scales in m/s, of this frame if None. scale: pixels per metre."""
     size = run.size
     speed = np.linalg.norm(frame.velocity, axis=1)
     if largest_speed is None:
-        largest_speed = largest_speed_of(speed, np.median(frame.diameter))
+        largest_speed = largest_speed_of(speed, typical_diameter(run, frame))
     position, radius, speed = with_periodic_images(frame.position, frame.radius, speed, size, run.periodic)
     extent = np.array([0.0, size[0], 0.0, size[2]])
     if scale is None:
-        scale = max(PIXELS_PER_DIAMETER / (2 * np.median(radius)), 600 / max(size[0], size[2]))
+        scale = max(PIXELS_PER_DIAMETER / typical_diameter(run, frame), 600 / max(size[0], size[2]))
         scale = min(scale, 3000 / max(size[0], size[2]))
     layer = fluid_slice(fluid) if fluid else None
     figure, axes, bars = side_view_axes(run, frame.time, 1 if layer is None else 2)

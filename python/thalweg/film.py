@@ -10,6 +10,10 @@ from thalweg import drawing
 from thalweg.errors import RunFolderError
 
 
+FASTEST_GIF = 50                    # images a second
+NARROWEST, WIDEST = 100, 10000      # pixels
+
+
 def chosen_frames(run, start=-np.inf, stop=np.inf, every=0.0):
     """The frames between two times (s), at least `every` seconds apart: of the grains, or of the fluid where there are
     none."""
@@ -39,7 +43,7 @@ def scales(run, frames):
     if not len(run.grains):
         return None, flow
     speeds = np.concatenate([np.linalg.norm(frame.velocity, axis=1) for frame in some])
-    return drawing.largest_speed_of(speeds, np.median(frames[0].diameter)), flow
+    return drawing.largest_speed_of(speeds, drawing.typical_diameter(run, frames[0])), flow
 
 
 def images(run, frames, width):
@@ -82,6 +86,12 @@ def write_film(run, frames, path, rate=20.0, width=900):
     """A film of the frames, `rate` of them a second, `width` pixels wide: an .mp4, which takes ffmpeg, a .gif, or else
     a folder of images."""
     path = Path(path)
+    if not 0.0 < rate < np.inf:
+        raise RunFolderError(f"--rate {rate:g}: give a number of images a second above 0.")
+    if path.suffix == ".gif" and rate > FASTEST_GIF:
+        raise RunFolderError(f"--rate {rate:g}: viewers show at most {FASTEST_GIF} images of a .gif a second; give an .mp4.")
+    if not NARROWEST <= width <= WIDEST:
+        raise RunFolderError(f"--width {width}: give {NARROWEST} to {WIDEST} pixels.")
     if path.suffix == ".mp4" and not shutil.which("ffmpeg"):
         raise RunFolderError(f"{path}: ffmpeg is not installed; give a .gif or a folder.")
     (path.parent if path.suffix else path).mkdir(parents=True, exist_ok=True)

@@ -22,16 +22,12 @@ class GrainFrame:
     """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row,
     column] and so on; `arrays` has all of them with their units."""
 
-    may_be_empty = False
-
     def __init__(self, time, path):
         self.time, self.path = time, path   # s
 
     @cached_property
     def arrays(self):
         position, arrays = read_points(self.path)
-        if len(position) == 0 and not self.may_be_empty:
-            raise RunFolderError(f"{self.path}: there are no grains in this frame.")
         arrays = {name: values.reshape(-1, 3, 3) if name.endswith("_stress") else values
                   for name, values in arrays.items()}
         return Columns({"position": position, **arrays}, GRAIN_UNITS, source=self.path, axes=("id",))
@@ -75,12 +71,6 @@ class GrainFrame:
     def volume(self):
         """m^3"""
         return 4.0 / 3.0 * np.pi * self.radius**3
-
-
-class GrainPartFrame(GrainFrame):
-    """The grains of a part of the output at one time, with the arrays that the part asks for; perhaps none."""
-
-    may_be_empty = True
 
 
 class FluidFrame:

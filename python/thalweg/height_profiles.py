@@ -3,7 +3,7 @@ their figure, after fig. 7(a) of Zhang et al. (2022)."""
 import matplotlib.pyplot as plt
 import numpy as np
 
-from thalweg.bed import surface_by_solid_fraction
+from thalweg.bed import is_obstructed, surface_by_solid_fraction
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.units import units_of
@@ -46,8 +46,9 @@ def fluid_velocity(run):
 
 
 def driving_stress(run, z, fraction):
-    """Pa at the middles z (m) of the layers: g_x times the mass of water and grains above."""
-    density = run.section("fluid")["density"] * (1.0 - fraction + run.density_ratio * fraction)
+    """Pa at the middles z (m) of the layers: g_x times the mass of grains, and of water where there is some, above."""
+    water = run.case["fluid"]["density"] if run.case.get("fluid") else 0.0
+    density = water * (1.0 - fraction) + run.density * fraction
     weight = density * run.gravity[0] * (z[1] - z[0])
     return np.cumsum(weight[::-1])[::-1] - 0.5 * weight
 
@@ -78,9 +79,11 @@ def stresses(run):
     z, fraction = grains["z"], grains["solid_fraction"]
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
     found = [("solid: contacts and motion", z, solid)]
-    if run.driven_by_slope and not run.side_walls:   # which would take a share
+    if run.driven_by_slope and not run.side_walls and not is_obstructed(run):   # which would take a share
         driving = driving_stress(run, z, fraction)
-        found += [("driving", z, driving), ("fluid: what is left of the driving", z, driving - solid)]
+        found.append(("driving", z, driving))
+        if run.case.get("fluid"):
+            found.append(("fluid: what is left of the driving", z, driving - solid))
     if "fluid_statistics" in run.profiles:
         fluid = run.profiles["fluid_statistics"]
         share = 1.0 - np.interp(fluid["z"], z, fraction)
@@ -95,7 +98,7 @@ def stresses(run):
 def weight_of_water(run):
     """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above.
     None where the slope is not all that drives the flow."""
-    if not run.driven_by_slope or not run.gravity[0] > 0.0:
+    if not run.driven_by_slope or not run.case.get("fluid"):
         return None
     z = np.array([0.0, run.size[2]])
     return z, run.section("fluid")["density"] * run.gravity[0] * (run.size[2] - z)
@@ -111,11 +114,12 @@ def style_of(label):
 def draw_velocities(axes, run, scaled):
     """Of grains and fluid, on a logarithmic scale, which shows the creep inside the bed as well."""
     z, fraction, velocity = grain_means(run)
-    grains = np.where((fraction > 0) & (velocity > 0), velocity, np.nan)
-    curves = [("grains", "#c0392b", z, grains)]
     fluid = fluid_velocity(run)
+    to_the_left = np.nansum(fraction * velocity if fluid is None else fluid[1]) < 0.0
+    way = -1.0 if to_the_left else 1.0
+    curves = [("grains", "#c0392b", z, np.where((fraction > 0) & (way * velocity > 0), way * velocity, np.nan))]
     if fluid is not None:
-        curves.append(("fluid", "#14496e", fluid[0], np.where(fluid[1] > 0, fluid[1], np.nan)))
+        curves.append(("fluid", "#14496e", fluid[0], np.where(way * fluid[1] > 0, way * fluid[1], np.nan)))
     curves = [curve for curve in curves if np.isfinite(curve[3]).any()]
     for label, colour, height, values in curves:
         axes.plot(values, scaled(height), color=colour, label=label)
@@ -124,7 +128,7 @@ def draw_velocities(axes, run, scaled):
         axes.set_xscale("log")
         axes.set_xlim(0.5 * max(np.nanmin(shown), 1e-5 * np.nanmax(shown)), 2.0 * np.nanmax(shown))
         axes.legend(fontsize=8, frameon=False, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
-    axes.set(xlabel=f"mean velocity along x [{units_of(run).mathematical('m/s')}]")
+    axes.set(xlabel=f"mean velocity along {'-x' if to_the_left else 'x'} [{units_of(run).mathematical('m/s')}]")
 
 
 def draw_stresses(axes, run, scaled):
@@ -138,10 +142,19 @@ def draw_stresses(axes, run, scaled):
     axes.set(xlabel=f"shear stress [{units_of(run).mathematical('Pa')}]")
 
 
+def surface_or_floor(z, fraction):
+    """Height (m) from which heights count, and its name: the surface of the bed, or the floor where there is none,
+    because the grains reach the top."""
+    try:
+        return surface_by_solid_fraction(z, fraction), "bed surface"
+    except RunFolderError:
+        return 0.0, "floor"
+
+
 def figure_of(run):
     """Solid fraction, velocities and shear stresses; heights in diameters from the surface by solid fraction."""
     z, fraction, _ = grain_means(run)
-    surface = surface_by_solid_fraction(z, fraction)
+    surface, above = surface_or_floor(z, fraction)
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 4.6), sharey=True, layout="constrained",
                                                  width_ratios=(0.8, 1, 1.2))
 
@@ -149,7 +162,7 @@ def figure_of(run):
         return (height - surface) / run.diameter
 
     left.plot(fraction, scaled(z), "k-")
-    left.set(xlabel="solid fraction [1]", ylabel="height above the bed surface [d]", xlim=(0, None),
+    left.set(xlabel="solid fraction [1]", ylabel=f"height above the {above} [d]", xlim=(0, None),
              ylim=(scaled(0.0), scaled(run.size[2])))
     draw_velocities(middle, run, scaled)
     draw_stresses(right, run, scaled)

@@ -68,7 +68,7 @@ class LayerSums:
         self.frames += 1
         self.taken = self.taken + self.solids
         stands = self.obstacles_in(frame)
-        if stands.all():
+        if len(stands) and stands.all():
             part *= (self.union / np.maximum(part.sum(axis=1), 1e-300))[:, None]
         elif stands.any():
             self.taken = self.taken + self.union

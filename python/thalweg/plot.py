@@ -1,6 +1,7 @@
 """The command `thalweg plot KIND RUN...`."""
 import importlib
 import math
+import sys
 from pathlib import Path
 
 from thalweg.errors import RunFolderError
@@ -61,8 +62,17 @@ def draw_all(wanted):
     overview, time = module("thalweg.figures.overview"), time_of(wanted)
     refuse_one_name(wanted)
     for folder in wanted.runs:
-        for name, draw in overview.figures_of(Run(folder), time):
-            yield saved(draw(), (wanted.out or folder) / f"{name}.png")
+        figures = overview.figures_of(Run(folder), time)
+        missing = []
+        for name, draw in figures:
+            try:
+                yield saved(draw(), (wanted.out or folder) / f"{name}.png")
+            except RunFolderError as error:
+                missing.append(error)
+        if missing and len(missing) == len(figures):
+            raise missing[0]
+        for error in missing:
+            print(f"thalweg: left out: {error}", file=sys.stderr)
 
 
 def draw_side_view(wanted):
@@ -114,6 +124,8 @@ def draw_relation(wanted):
 def draw_visible(wanted):
     refuse_suffix(wanted.out)
     start, stop = -math.inf if wanted.start is None else wanted.start, math.inf if wanted.stop is None else wanted.stop
+    if wanted.frames < 1:
+        raise RunFolderError(f"--frames {wanted.frames}: give at least one.")
     visible = module("thalweg.figures.visible")
     yield saved(visible.figure_of([Run(folder) for folder in wanted.runs], start, stop, wanted.frames), wanted.out)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.case_file import read_case
 from thalweg.errors import MissingName, RunFolderError
-from thalweg.frames import FluidFrame, Frames, GrainFrame, GrainPartFrame, SolidFrame
+from thalweg.frames import FluidFrame, Frames, GrainFrame, SolidFrame
 from thalweg.hdf5 import columns_of, opened
 from thalweg.records import Events, Probes, Records, parts_of
 from thalweg.tables import read_series
@@ -61,7 +61,7 @@ class Run:
 
     def grain_part(self, name):
         """Frames of one of `output.grain_parts` of the case, by its name; they may show no grain."""
-        return self._part("grain_parts", name, GrainPartFrame)
+        return self._part("grain_parts", name, GrainFrame)
 
     def _part(self, kind, name, frame):
         index = self.folder / kind / f"{name}.pvd"
@@ -260,7 +260,12 @@ class Run:
 
     @property
     def density_ratio(self):
-        """Density of the free grains, mass over volume, over that of the fluid, 1."""
+        """Density of the free grains over that of the fluid, 1."""
+        return self.density / self.section("fluid")["density"]
+
+    @property
+    def density(self):
+        """kg/m^3, of the free grains: mass over volume."""
         density = self.reference("density")
         if density is None:
             populations = [
@@ -271,7 +276,7 @@ class Run:
             ]
             densities = [grains["density"] for grains in populations] or [self.free_populations[0]["density"]]
             density = float(np.average(densities, weights=volumes))
-        return density / self.section("fluid")["density"]
+        return density
 
     @property
     def gravity(self):

@@ -104,6 +104,9 @@ class Figures(made_up.MadeUpFolder):
             self.assertEqual(film.n_frames, 4)   # at 0, 0.2, 0.4, 0.6 s
         self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)
         self.refused(self.plot("film", "--from", "5"), "no frame of the grains in this time")
+        for option, value, words in (("--rate", "0", "above 0"), ("--rate", "60", "at most 50 images"),
+                                     ("--width", "0", "100 to 10000 pixels")):
+            self.refused(self.plot("film", option, value), words)
         self.refused(self.plot("film", "--out", self.folder / "film.webm"), "give a .gif, an .mp4 or a folder")
 
     def test_figures_of_several_runs_go_into_their_folders(self):

@@ -19,6 +19,7 @@ from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import BEGUN, FAILED, name_of, short_keys
 from thalweg.sweep.tasks import BisectionTask, result_columns, tasks_of
+from thalweg.sweep.warnings import grouped
 
 BISECT = {"key": "gravity.slope", "from": 0.0, "to": 1.0, "width": 0.2, "holds": "transport_rate.q_star_mean > 0.1"}
 
@@ -408,6 +409,15 @@ class Units(unittest.TestCase):
         self.assertEqual(units, {"gravity.magnitude": "m/s^2", "gravity.vector": "m/s^2", "grains.diameter.value": "m",
                                  "grains.diameter": "m", "grains.contact.damping": "kg/(s m^1/2)"})
         self.assertEqual(tables.headed("grains.0.diameter", units), "grains.0.diameter [m]")
+
+
+class Warnings(unittest.TestCase):
+    def test_those_of_several_runs_that_differ_in_numbers_alone_are_one(self):
+        two = ["Grains of 2.65 kg/m^3 float.", "Grains of 1.4 kg/m^3 float."]   # of two populations
+        self.assertEqual(
+            grouped([("a", two), ("b", ["Grains of 1 kg/m^3 float."]), ("c", ["No water."])]),
+            [(two[0], ["a", "b"]), (two[1], ["a"]), ("No water.", ["c"])],
+        )
 
 
 if __name__ == "__main__":

@@ -175,7 +175,7 @@ def pictured(run, time):
     if time is None and run.fluid:
         time = run.fluid.times[-1]
     grains = run.grains.nearest(time)
-    fluid = run.fluid.nearest(grains.time if grains else time)
+    fluid = run.fluid.nearest(grains.time if grains is not None else time)
     if grains is None and fluid is None:
         raise RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
     return grains, fluid
@@ -191,7 +191,7 @@ def scene(run, grains, fluid, direction, font):
         renderer.SetBackground(1.0, 1.0, 1.0)
     vtkLightKit().AddLightsToRenderer(view)
     view.AddActor(box_actor(run.size))
-    solids = run.solids.nearest((grains or fluid).time)
+    solids = run.solids.nearest((fluid if grains is None else grains).time)
     if solids:
         view.AddActor(solid_actor(solids))
     unit = units_of(run)
@@ -199,13 +199,13 @@ def scene(run, grains, fluid, direction, font):
     layer = drawing.fluid_slice(fluid) if fluid else None
     if layer is not None:
         shown.append(("fluid speed", *slice_actor(fluid, layer, far_side, unit.per_speed)))
-    if not shown:
+    if not shown and grains is None:
         raise RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
     for place, (title, actor, table) in enumerate(shown):
         view.AddActor(actor)
         margin.AddActor2D(scale_bar(table, title, unit.speed, place, font))
     title = vtkTextActor()
-    title.SetInput(drawing.title_of(run, (grains or fluid).time) + drawing.flow_direction(run, direction[1]))
+    title.SetInput(drawing.title_of(run, (fluid if grains is None else grains).time) + drawing.flow_direction(run, direction[1]))
     plain_text(title.GetTextProperty(), font)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.03, 0.955)

@@ -3,6 +3,7 @@ import json
 import re
 import shutil
 import textwrap
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 from thalweg.sweep.machine import cores
@@ -13,13 +14,16 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 def grouped(warnings):
     """warnings: pairs of the name of a run and its list. Sentences with the names of the runs that have them, in the
-    order of their first appearance; those that differ in numbers alone are one, with the numbers of the first."""
+    order of their first appearance; those of several runs that differ in numbers alone are one, with the numbers of the
+    first."""
     found = {}
     for name, sentences in warnings:
-        for sentence in sentences:
-            first, names = found.setdefault(NUMBER.sub("#", sentence), (sentence, []))
-            if name not in names:
-                names.append(name)
+        known = Counter()   # of this run
+        for sentence in dict.fromkeys(sentences):
+            alike = NUMBER.sub("#", sentence)
+            first, names = found.setdefault((alike, known[alike]), (sentence, []))
+            known[alike] += 1
+            names.append(name)
     return list(found.values())
 
 

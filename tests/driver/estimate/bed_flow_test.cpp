@@ -68,6 +68,19 @@ TEST(FlowNumbers, KnowHowHighABedSettles) {
   EXPECT_EQ(settled_fraction(flume), 0.6);
 }
 
+// Floating grains do not lie in the bed, and a top that moves drives the water beside the slope.
+TEST(FlowNumbers, LeaveOutWhatFloats) {
+  Case c = water_over_glass(5e-3, 0.016, 0.06, 0.040, lbm::FaceType::periodic);
+  const double height = settled_height(c);
+  c.grains.push_back(c.grains.front());
+  c.grains.back().density = 900.0;
+  EXPECT_NEAR(settled_height(c), height, 1e-12);
+  EXPECT_TRUE(std::isfinite(flow_numbers(c).shields_depth));
+  c.domain.faces[top].type = lbm::FaceType::moving;
+  c.domain.faces[top].velocity = Vec3(0.1, 0.0, 0.0);
+  EXPECT_FALSE(std::isfinite(flow_numbers(c).shields_depth));
+}
+
 // Disks lie in one layer, as wide as they are thick: 60 of 4 mm on 60 mm, 0.8 of whose plane they cover.
 TEST(FlowNumbers, KnowHowHighDisksSettle) {
   Case c = water_over_glass(4e-3, 0.0, 0.05, 0.009, lbm::FaceType::periodic);

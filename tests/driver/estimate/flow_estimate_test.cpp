@@ -322,6 +322,26 @@ TEST(FlowEstimate, OfBalancedGravityIsWithoutASlope) {
   EXPECT_NE(flow_estimate(c).drive, FlowCause::slope);
 }
 
+// The start of a flow to the left goes to the left.
+TEST(LogProfile, GoesTheWayOfTheFlow) {
+  const auto shear_velocity = [](Case c) {
+    c.initial.fluid.log_profile.emplace();
+    complete(c);
+    return *c.initial.fluid.log_profile->shear_velocity;
+  };
+  Case by_slope = wide_bed(0.016), steered = wide_bed(0.0), fed = wide_bed(0.0);
+  const double right = shear_velocity(by_slope);
+  EXPECT_GT(right, 0.0);
+  by_slope.gravity.slope = -0.016;
+  EXPECT_EQ(shear_velocity(by_slope), -right);
+  steered.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = -0.1, .response_time = 1.0};
+  EXPECT_LT(shear_velocity(steered), 0.0);
+  fed.domain.faces[x_low].type = lbm::FaceType::pressure_outlet;
+  fed.domain.faces[x_high].type = lbm::FaceType::velocity_inlet;
+  fed.domain.faces[x_high].velocity = Vec3(-0.1, 0.0, 0.0);
+  EXPECT_LT(shear_velocity(fed), 0.0);
+}
+
 // A log profile that is left to the program, in laminar flow and under a lid, where the flow has another profile.
 TEST(LogProfile, HasTheDischargeOfTheFlow) {
   for (const lbm::FaceType lid : {lbm::FaceType::free_slip, lbm::FaceType::no_slip})
