@@ -107,7 +107,10 @@ output: {series: {every: 0.01}}
 
     def is_running(self):
         log = self.folder / self.RUN / "run.log"
-        return log.exists() and "steps/s" in log.read_text()[self.log_before:]
+        try:
+            return "steps/s" in log.read_text()[self.log_before:]
+        except FileNotFoundError:   # not there yet, or not there for a moment while a new one takes its place
+            return False
 
     def begin_turn(self, **environment):
         log = self.folder / self.RUN / "run.log"
