@@ -30,9 +30,8 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
 
-// False for free grains that are no heavier than the fluid, and float.
 bool makes_a_bed(const Case& c, const beds::Population& population) {
-  return population.held() || !has_fluid(c) || population.density > c.fluid.density * (1.0 + neutral_density);
+  return population.held() || !floats(c, population);
 }
 
 // m^3.
@@ -58,6 +57,10 @@ double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBel
 }
 
 }  // namespace
+
+bool floats(const Case& c, const beds::Population& grains) {
+  return has_fluid(c) && grains.density <= (1.0 + neutral_density) * c.fluid.density;
+}
 
 FlowNumbers flow_numbers(const Case& c) {
   FlowNumbers flow;
@@ -109,17 +112,15 @@ bool drives_flow(const Case& c, int axis) {
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
 
-bool side_walls_move(const Case& c) {
-  const auto moves = [&](FaceIndex face) {
-    return c.domain.faces[face].type == lbm::FaceType::moving && c.domain.faces[face].velocity.x() != 0.0;
-  };
-  return moves(y_low) || moves(y_high);
+bool moves_along_x(const coupling::FaceKeys& face) {
+  return face.type == lbm::FaceType::moving && face.velocity.x() != 0.0;
 }
 
-bool walls_drive(const Case& c) {
-  const coupling::FaceKeys& lid = c.domain.faces[top];
-  return side_walls_move(c) || (lid.type == lbm::FaceType::moving && lid.velocity.x() != 0.0);
+bool side_walls_move(const Case& c) {
+  return moves_along_x(c.domain.faces[y_low]) || moves_along_x(c.domain.faces[y_high]);
 }
+
+bool walls_drive(const Case& c) { return side_walls_move(c) || moves_along_x(c.domain.faces[top]); }
 
 double held_by_the_bed(const Case& c, double depth) { return depth / surfaces(c); }
 

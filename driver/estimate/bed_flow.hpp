@@ -11,6 +11,9 @@ namespace thalweg::driver {
 // Grains heavier than the fluid by less than this fraction of its density make no bed: that is rounding.
 inline constexpr double neutral_density = 1e-6;
 
+// True for those, and for lighter ones; without a fluid for none.
+bool floats(const Case& c, const beds::Population& grains);
+
 // Shields number and depth follow Zhang et al. 2022: tau_b = rho_f g_x H far from side walls, rho_f g_x H W/(2 H + W)
 // between two of them, rho_f g_x H W/(H + W) beside one, and tau* = tau_b / ((rho_s - rho_f) g d). g_x is the part of
 // gravity along the bed, g times the sine of its angle. Under a top that drags, H is half the depth: what lies above
@@ -53,7 +56,10 @@ bool drives_flow(const Case& c, int axis);
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
 
-// True if one of them moves along x, and takes no share that follows from the hydraulic radius.
+// True for a wall that slides along x.
+bool moves_along_x(const coupling::FaceKeys& face);
+
+// True if a side wall moves along x, and takes no share that follows from the hydraulic radius.
 bool side_walls_move(const Case& c);
 
 // True if the top or a side wall moves along x, so that not the slope alone drives the water.

@@ -200,13 +200,11 @@ FlowEstimate flow_of_mean_velocity(const Case& c, const Channel& channel) {
 
 // Of an inlet upstream. A flow that nothing holds back keeps the profile of its inlet and has no friction velocity.
 FlowEstimate flow_of_inlet(const Case& c, const Channel& channel) {
-  const bool from_the_right = c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet;
-  const coupling::FaceKeys& inlet = c.domain.faces[from_the_right ? x_high : x_low];
-  const double inwards = from_the_right ? -inlet.velocity.x() : inlet.velocity.x();
-  if (inlet.type != lbm::FaceType::velocity_inlet || !(inwards > 0.0) || !channel.is_held()) return {};
-  const double mean = inwards * c.domain.size.z() / channel.depth;
+  const coupling::FaceKeys* inlet = inlet_of(c);
+  if (!inlet || !channel.is_held()) return {};
+  const double mean = std::abs(inlet->velocity.x()) * c.domain.size.z() / channel.depth;
   FlowEstimate flow = flow_of_discharge(mean, FlowCause::inlet, channel);
-  flow.spin_up = inlet.recycling_plane ? time_to_adapt(flow, channel) : c.domain.size.x() / mean;
+  flow.spin_up = inlet->recycling_plane ? time_to_adapt(flow, channel) : c.domain.size.x() / mean;
   return flow;
 }
 
@@ -238,7 +236,7 @@ double way_of(const Case& c, FlowCause drive) {
   if (drive == FlowCause::slope) return sign(gravity_vector(c.gravity).x());
   if (drive == FlowCause::mean_velocity) return sign(c.fluid.mean_velocity->velocity);
   if (drive == FlowCause::moving_face) return sign(c.domain.faces[top].velocity.x());
-  return drive == FlowCause::inlet && c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet ? -1.0 : 1.0;
+  return drive == FlowCause::inlet ? sign(inlet_of(c)->velocity.x()) : 1.0;
 }
 
 void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
@@ -326,6 +324,15 @@ double estimated_velocity(const Case& c) {
   const Channel channel = channel_of(c);
   const double along = acceleration_along(c);
   return along == 0.0 || channel.depth <= 0.0 ? 0.0 : developed_flow(c, channel, along).speed;
+}
+
+const coupling::FaceKeys* inlet_of(const Case& c) {
+  const auto comes_in = [&](FaceIndex face, double inwards) {
+    const coupling::FaceKeys& keys = c.domain.faces[face];
+    return keys.type == lbm::FaceType::velocity_inlet && inwards * keys.velocity.x() > 0.0;
+  };
+  if (comes_in(x_low, 1.0)) return &c.domain.faces[x_low];
+  return comes_in(x_high, -1.0) ? &c.domain.faces[x_high] : nullptr;
 }
 
 FlowEstimate flow_estimate(const Case& c) {

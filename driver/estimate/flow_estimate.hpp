@@ -52,6 +52,9 @@ enum class FlowCause {
 // "slope and depth", ...
 const char* words_of(FlowCause cause);
 
+// The face across x where the water comes in; null: there is none.
+const coupling::FaceKeys* inlet_of(const Case& c);
+
 struct FlowEstimate {
   double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
   FlowCause cause = FlowCause::none;  // of that speed

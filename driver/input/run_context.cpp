@@ -41,7 +41,7 @@ analysis::FluidContext fluid_context(const Case& c) {
           c.fluid.mean_velocity.has_value(),
           side_walls(c),
           c.domain.faces[top].drags(),
-          c.domain.faces[top].type == lbm::FaceType::moving && c.domain.faces[top].velocity.x() != 0.0,
+          moves_along_x(c.domain.faces[top]),
           !c.solids.empty(),
           side_walls_move(c)};
 }

@@ -136,7 +136,7 @@ void add_densities(const Case& c, Lines& lines) {
     const beds::Population& grains = c.grains[p];
     mixed = mixed || grains.density != c.grains[populations.front()].density;
     const double weight = (grains.density - c.fluid.density) * g * grains.diameter;
-    if (grains.density > (1.0 + neutral_density) * c.fluid.density)
+    if (!floats(c, grains))
       numbers.push_back({stress / weight, fmt::format("{:.3g} for grains.{} ({:g} kg/m^3, {:.4g} m)", stress / weight,
                                                       p, grains.density, grains.diameter)});
   }

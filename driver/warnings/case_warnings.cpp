@@ -215,7 +215,7 @@ Warnings floating_grains(const Case& c) {
   Warnings found;
   if (gravity_vector(c.gravity).z() >= 0.0 || c.gravity.mode == GravityMode::balanced) return found;
   for (std::size_t n = 0; n < c.grains.size(); ++n)
-    if (!c.grains[n].held() && c.grains[n].density <= (1.0 + neutral_density) * c.fluid.density)
+    if (!c.grains[n].held() && floats(c, c.grains[n]))
       found.push_back(
           fmt::format("Grains of {:g} kg/m^3 (grains.{}) are no heavier than the fluid of {:g} kg/m^3: they "
                       "make no bed, and there is no Shields number.",

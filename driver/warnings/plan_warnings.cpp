@@ -114,12 +114,11 @@ Warnings early_averages(const Case& c) {
 
 // Water at rest that an inlet sets going in the first step is a water hammer.
 Warnings sudden_inlet(const Case& c) {
-  const bool from_the_right = c.domain.faces[x_high].type == lbm::FaceType::velocity_inlet;
-  const coupling::FaceKeys& inlet = c.domain.faces[from_the_right ? x_high : x_low];
+  const coupling::FaceKeys* inlet = inlet_of(c);
   const bool at_rest = c.initial.fluid.count() == 0 && !c.initial.takes(InitialField::fluid);
-  if (inlet.type != lbm::FaceType::velocity_inlet || !at_rest || !has_free_grains(c)) return {};
+  if (!inlet || !at_rest || !has_free_grains(c)) return {};
   std::vector<Advice> advice = developed_start(c, flow_estimate(c));
-  const Vec3 v = inlet.velocity;
+  const Vec3 v = inlet->velocity;
   const Change uniform = word_change("initial.fluid.uniform", fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()),
                                      [v](Case& other) { other.initial.fluid.uniform = v; });
   if (advice.empty()) advice.push_back({{uniform}, {}});
@@ -147,8 +146,7 @@ Warnings unsettled_grains(const Case& c) {
   double longest = 0.0;
   for (const beds::Population& grains : c.grains)
     if (!grains.held() && !grains.from_file() && !c.initial.takes(InitialField::grains) &&
-        grains.placement.positions.empty() &&
-        (!has_fluid(c) || grains.density > (1.0 + neutral_density) * c.fluid.density))
+        grains.placement.positions.empty() && !floats(c, grains))
       longest = std::max(longest, settling_time(c, grains));
   if (longest <= c.run.until) return {};
   return {{fmt::format("The highest grains fall for about {:.2g} s, and the run ends before, at {:g} s", longest,
