@@ -145,12 +145,12 @@ std::vector<Diagnostic> GrainDynamics::turnover_diagnostics() const {
   return diagnostics;
 }
 
-// Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, and bodies and mass of each
-// supply and sink.
 static std::string rate_name(const std::string& group, std::size_t supply) {
   return fmt::format("{}/supply_{}_rate", group, supply);
 }
 
+// Attributes: first_supplied_id, largest_radius and largest_offset of any grain so far, bodies and mass of each supply
+// and sink, and the rate of each supply.
 void GrainDynamics::save_turnover(ArchiveWriter& archive, const std::string& group) const {
   if (!turnover_.any()) return;
   const Turnover::State& state = turnover_.state();
@@ -238,8 +238,7 @@ static void check_rates(ArchiveReader& archive, const std::string& group, const 
     if (!same_but_for_rounding(saved, now))
       throw InputError(
           fmt::format("Supply {0} brings {1:.4g} {3} now, and has brought {2:.4g} {3} so far. A transport rate goes by "
-                      "the reference "
-                      "grain, the density of the fluid and gravity; set these back, or begin a new run.",
+                      "the reference grain, the density of the fluid and gravity; set these back, or begin a new run.",
                       n, now, saved, supplies[n].by_mass ? "kg/s" : "grains/s"));
   }
 }

@@ -77,9 +77,11 @@ double grain_frames(const Case& c) {
 double solid_frames(const Case& c) {
   const std::set<double> intervals = solid_frames_every(c);
   if (c.solids.empty() || intervals.empty()) return 0.0;
-  double frames = any_solid_moves(c) ? 0.0 : 1.0;
-  if (any_solid_moves(c))
+  double frames = 1.0;
+  if (any_solid_moves(c)) {
+    frames = 0.0;
     for (const double every : intervals) frames += times_in(c, every);
+  }
   double bytes = 0.0;
   for (const TriangleMesh& mesh : solid_surfaces(c, 0.0))
     bytes += 24.0 * static_cast<double>(mesh.points.size()) + 40.0 * static_cast<double>(mesh.triangles.size());

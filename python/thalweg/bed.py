@@ -67,7 +67,7 @@ def slope_of(shields, depth, diameter, density_ratio, width=None, side_walls=2):
 
 def measured_shields_number(run, start, stop):
     """Mean between two times (s) of the Shields number that `analysis.bed_surface` wrote into series.csv."""
-    if "moving" in run.faces("y"):
+    if run.side_walls_move:
         raise RunFolderError(
             f"{run.folder}: the share of side walls that move does not follow from the hydraulic radius; the bed stress "
             "is that of analysis.stress_balance."

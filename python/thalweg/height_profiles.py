@@ -116,10 +116,14 @@ def draw_velocities(axes, run, scaled):
     z, fraction, velocity = grain_means(run)
     fluid = fluid_velocity(run)
     to_the_left = np.nansum(fraction * velocity if fluid is None else fluid[1]) < 0.0
-    way = -1.0 if to_the_left else 1.0
-    curves = [("grains", "#c0392b", z, np.where((fraction > 0) & (way * velocity > 0), way * velocity, np.nan))]
+
+    def on_the_way(values):
+        downstream = -values if to_the_left else values
+        return np.where(downstream > 0, downstream, np.nan)
+
+    curves = [("grains", "#c0392b", z, on_the_way(np.where(fraction > 0, velocity, 0.0)))]
     if fluid is not None:
-        curves.append(("fluid", "#14496e", fluid[0], np.where(way * fluid[1] > 0, way * fluid[1], np.nan)))
+        curves.append(("fluid", "#14496e", fluid[0], on_the_way(fluid[1])))
     curves = [curve for curve in curves if np.isfinite(curve[3]).any()]
     for label, colour, height, values in curves:
         axes.plot(values, scaled(height), color=colour, label=label)

@@ -219,6 +219,13 @@ class Run:
         return sum(face in DRAGGING for face in self.faces("y"))
 
     @property
+    def side_walls_move(self):
+        """Whether a face across y is a wall that moves along x, and takes a share that no hydraulic radius tells."""
+        boundaries = self.section("domain").get("boundaries", {})
+        faces = [face for key in ("y", "y_low", "y_high") if isinstance(face := boundaries.get(key), dict)]
+        return any(face.get("type") == "moving" and face["velocity"][0] != 0.0 for face in faces)
+
+    @property
     def free_populations(self):
         """Populations of the case that are free to move, or all where none is; RunFolderError where there are no
         grains."""
@@ -296,12 +303,12 @@ class Run:
     @property
     def driven_by_slope(self):
         """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or
-        drags, no side wall moves, no face is open and no wall ends the box along x."""
+        drags, no side wall moves along x, no face is open and no wall ends the box along x."""
         steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
         open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
         top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
         return bool(self.gravity[0] > 0.0 and self.periodic[0] and not steered and not open_faces and top_is_free
-                    and "moving" not in self.faces("y"))
+                    and not self.side_walls_move)
 
 
 class Profiles(dict):

@@ -158,6 +158,9 @@ class RunFolder(made_up.MadeUpFolder):
     def test_what_drives_the_fluid(self):
         self.assertTrue(thalweg.Run(self.folder).driven_by_slope)
         self.assertFalse(self.with_case("top: free_slip", "top: {type: moving, velocity: [0.1, 0, 0]}").driven_by_slope)
+        for velocity, by_slope in (("[0.1, 0, 0]", False), ("[0, 0, 0.1]", True)):   # along the flow, and across it
+            sides = self.with_case("y: {type: law_of_the_wall}", f"y: {{type: moving, velocity: {velocity}}}")
+            self.assertEqual(sides.driven_by_slope, by_slope)
         self.assertFalse(
             self.with_case("fluid: {density", "fluid: {mean_velocity: {velocity: 0.1}, density").driven_by_slope
         )

@@ -191,7 +191,8 @@ def scene(run, grains, fluid, direction, font):
         renderer.SetBackground(1.0, 1.0, 1.0)
     vtkLightKit().AddLightsToRenderer(view)
     view.AddActor(box_actor(run.size))
-    solids = run.solids.nearest((fluid if grains is None else grains).time)
+    time = (fluid if grains is None else grains).time
+    solids = run.solids.nearest(time)
     if solids:
         view.AddActor(solid_actor(solids))
     unit = units_of(run)
@@ -205,7 +206,7 @@ def scene(run, grains, fluid, direction, font):
         view.AddActor(actor)
         margin.AddActor2D(scale_bar(table, title, unit.speed, place, font))
     title = vtkTextActor()
-    title.SetInput(drawing.title_of(run, (fluid if grains is None else grains).time) + drawing.flow_direction(run, direction[1]))
+    title.SetInput(drawing.title_of(run, time) + drawing.flow_direction(run, direction[1]))
     plain_text(title.GetTextProperty(), font)
     title.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     title.SetPosition(0.03, 0.955)
