@@ -92,8 +92,8 @@ std::vector<std::string> Reach::remarks() const {
                   sections_.size() - sections_.first(), variation_of(q_s_, sections_.first()) / unit);
   const double trend = bed_trend(mean_level_);
   if (std::isnan(trend)) return {transport};
-  return {transport, fmt::format("reach: the level of the bed changes by {:+.3g} +- {:.2g} mm/s", 1e3 * trend,
-                                 1e3 * trend_of(mean_level_).error / duration_of(mean_level_))};
+  return {transport, fmt::format("reach: the level of the bed changes by {:+.3g} +- {:.2g} m/s", trend,
+                                 trend_of(mean_level_).error / duration_of(mean_level_))};
 }
 
 void Reach::add_by_section(std::vector<Profile>& profiles) const {

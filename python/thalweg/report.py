@@ -15,7 +15,7 @@ from thalweg import bed, sizes, water
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import mean_with_error
-from thalweg.transport import column_of, sentence_of_column, state_of_column, transport
+from thalweg.transport import column_of, sentence_of_column, state_of_column, symbol_and_units, transport
 from thalweg.units import units_of
 from thalweg.visible_profiles import visible_profiles
 
@@ -42,13 +42,14 @@ class Report:
             self.say(name, f"left out: {error}")
 
     def write(self, folder):
-        """summary.json with the numbers (SI units) and a table for each profile. Returns the files."""
+        """summary.json with the numbers (SI units, or grain units where the case has them) and a table for each profile.
+        Returns the files."""
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "summary.json"]
         files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         for name, columns in self.profiles.items():
             files.append(folder / f"{name}.csv")
-            write_columns(files[-1], columns)
+            write_columns(files[-1], columns, units_of(self.run))
         return files
 
 
@@ -61,14 +62,14 @@ def without_nan(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def write_columns(path, columns):
-    """A table of columns over z, with a column for each component."""
+def write_columns(path, columns, units):
+    """A table of columns over z, with a column for each component, headed by the names of units."""
     headings, values = [], []
     for name, array in columns.items():
         flat = array.reshape(len(array), -1)
         parts = {1: [""], 2: ["_x", "_z"], 3: ["_x", "_y", "_z"],
                  9: ["_" + a + b for a in "xyz" for b in "xyz"]}[flat.shape[1]]
-        headings += [f"{name}{part} [{columns.units[name]}]" for part in parts]
+        headings += [f"{name}{part} [{units.named(columns.units[name])}]" for part in parts]
         values.append(flat)
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -119,16 +120,18 @@ def times_of_means(run, observer):
     return {"from": run.averaged_from(observer), "until": (run.summary or {}).get("simulated_time")}
 
 
-def in_words(times):
-    end = "on" if times["until"] is None else f"to {times['until']:g} s"
-    return f"from {times['from']:g} {'s ' if times['until'] is None else ''}{end}"
+def in_words(times, second):
+    """Begin and end of means. second: the name of the unit."""
+    if times["until"] is None:
+        return f"from {times['from']:g} {second} on"
+    return f"from {times['from']:g} to {times['until']:g} {second}"
 
 
 def describe_sizes(report):
     found = sizes.sizes_of(report.run)
     times = times_of_means(report.run, "fractional_transport")
     report.numbers["fractional_transport"] = times | found.numbers()
-    report.say("sizes", f"{found.sentence()}; means of the run {in_words(times)}")
+    report.say("sizes", f"{found.sentence()}; means of the run {in_words(times, units_of(report.run).named('s'))}")
 
 
 def describe_reach(report):
@@ -137,20 +140,26 @@ def describe_reach(report):
         raise RunFolderError("the means along x are in summary.json, which the run writes at its end.")
     times = times_of_means(report.run, "reach")
     report.numbers["reach"] = times | found
-    name, label, unit = ("q_star", "q*", "") if "q_star_mean" in found else ("q_s", "q_s", " m^2/s")
+    name, units = column_of(report.run), units_of(report.run)
+    label, unit, second = symbol_and_units(report.run, name)
     mean, error = found[f"{name}_mean"], found[f"{name}_error"]
     if mean is None:
         raise RunFolderError("nothing was measured before the end of the run.")
     known = "" if error is None else f" +- {error:.2g}"
-    report.say("reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections and of the run {in_words(times)}")
+    report.say(
+        "reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections and of the run {in_words(times, second)}"
+    )
     trend = found["bed_level_trend"]
     if trend is not None:
         way = "falling" if trend < 0.0 else "rising"
-        report.say("reach", f"bed at {found['bed_level_mean']:.4g} m, {way} by {abs(trend):.2g} m/s")
+        report.say(
+            "reach", f"bed at {found['bed_level_mean']:.4g} {units.named('m')},"
+            f" {way} by {abs(trend):.2g} {units.named('m/s')}"
+        )
     if found["arrived_grains"] or found["left_grains"]:
         stay = found["residence_time_mean"]
         report.say("reach", f"{found['arrived_grains']:g} grains came in, {found['left_grains']:g} left"
-                   + ("" if stay is None else f"; those that did both stayed for {stay:.3g} s"))
+                   + ("" if stay is None else f"; those that did both stayed for {stay:.3g} {second}"))
 
 
 def describe_surface(report, name, title, surface):
@@ -194,7 +203,7 @@ def describe_water(report, surface):
     mean, middle = (f"{value:.4g} m/s ({100 * (value / right - 1):+.1f} %" for value, right in zip(speeds, expected))
     report.say(
         "water",
-        f"above {above:.4g} m, {in_words(times)}: {mean} from the law of the wall at the side walls), "
+        f"above {above:.4g} m, {in_words(times, 's')}: {mean} from the law of the wall at the side walls), "
         f"half-way between them {middle})",
     )
 

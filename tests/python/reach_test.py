@@ -66,6 +66,18 @@ class ReachTest(made_up.MadeUpFolder):
             "reach      bed at 0.02 m, falling by 0.0003 m/s",
             "reach      12 grains came in, 10 left"])
 
+    def test_in_grain_units(self):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "model_fluid: {units: grain}\n")
+        (self.folder / "series.csv").write_text("time [s],q_s [m^2/s]\n0,0\n1,1\n2,1\n3,1\n")
+        means = {"q_s_mean": 0.25, "q_s_error": 0.05, "bed_level_mean": 4.2, "bed_level_trend": 0.02,
+                 "arrived_grains": 12, "left_grains": 10, "residence_time_mean": 5.0}
+        (self.folder / "summary.json").write_text(json.dumps({"reach": means, "simulated_time": 3.0}), encoding="utf-8")
+        self.assertEqual(self.lines_of_reach(), [
+            "reach      q_s = 0.25 +- 0.05 sqrt(g'D^3), mean of all sections and of the run from 1 to 3 sqrt(D/g')",
+            "reach      bed at 4.2 D, rising by 0.02 sqrt(g'D)",
+            "reach      12 grains came in, 10 left; those that did both stayed for 5 sqrt(D/g')"])
+
     def test_the_means_of_the_run_keep_their_times_beside_those_of_other_times(self):
         means = {"q_star_mean": 0.25, "q_star_error": 0.05, "mean_from": 1.0, "bed_level_trend": None,
                  "arrived_grains": 0, "left_grains": 0}

@@ -69,6 +69,10 @@ class Reports(made_up.MadeUpFolder):
         volume = np.sum(layers["solid_fraction"]) * SIZE.prod() / len(layers["z"])
         self.assertAlmostEqual(volume / (480 * np.pi / 6 * D**3), 1.0, 6)
         self.assertEqual(layers.units["velocity_x"], "m/s")
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "model_fluid: {units: grain}\n")
+        self.assertEqual(read_series(report_of(thalweg.Run(self.folder)).write(self.folder / "out")[1]).units["velocity_x"],
+                         "sqrt(g'D)")
 
     def test_rows_without_a_number_do_not_count(self):
         rows = [f"{t:.6g},{q},{n}" for t, q, n in zip(np.arange(0.0, 4.005, 0.01), self.rate, [4, 6] * 201)]

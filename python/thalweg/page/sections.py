@@ -79,7 +79,7 @@ def findings(run):
     bed = (run.summary or {}).get("bed") or {}
     units = (run.summary or {}).get("units") or {}
     rows = [
-        (words, number(bed[name]), "" if units.get(name, "1") == "1" else units[name])
+        (words, number(bed[name]), "" if units.get(name, "1") == "1" else units_of(run).named(units[name]))
         for name, words in WORDS.items()
         if name in bed
     ]
