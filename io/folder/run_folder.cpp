@@ -59,7 +59,7 @@ std::string why_not_writable(const fs::path& path) {
 
 }  // namespace
 
-std::vector<std::string> RunFolder::names_of_records() { return {"probes", "tracks", "entrainment"}; }
+std::vector<std::string> RunFolder::names_of_records() { return {"probes", "tracks", "reach", "entrainment"}; }
 
 bool RunFolder::is_run_folder() const {
   std::error_code ignored;

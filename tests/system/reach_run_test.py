@@ -86,6 +86,13 @@ class ReachRun(ProgramTest):
         self.run_well("run", self.case, "--out", self.folder / "again", "--resume", *without_frames, ranks=2)
         self.assert_same("one", "again")
 
+    def test_records_that_are_no_longer_wanted_do_not_outlive_their_course(self):
+        self.run_well("run", self.case, "--out", self.folder / "one", "--until", "0.6")
+        first = min((self.folder / "one/checkpoints").glob("step_*"), key=lambda path: int(path.stem[5:]))
+        self.run_well("run", self.case, "--out", self.folder / "one", "--restart", first, "--until", "0.46", "--set",
+                      "analysis={}")
+        self.assertLessEqual(self.records("one")["time"].max(), 0.45)
+
     def test_grains_that_recirculate(self):
         back = "sinks.0.recirculation={region: {lower: [0.005, 0.003, 0.02], upper: [0.02, 0.017, 0.04]}}"
         settings = ["--set", back, "--set", "supplies=[]"]
