@@ -141,7 +141,8 @@ void RunOutput::add_records() {
   for (ObserverRecords& records : records_) records.parts.add(records.observer->take_records(), system_.step());
 }
 
-// Frames and records that the run no longer writes are dropped as well: they belong to the course that it has left.
+// Frames, records and rows that the run no longer writes are dropped as well: they belong to the course that it has
+// left.
 void RunOutput::drop_what_is_later() const {
   on_first_rank(communicator_, [&] {
     for (const std::string& name : io::RunFolder::names_of_records())
@@ -149,6 +150,8 @@ void RunOutput::drop_what_is_later() const {
   });
   for (const auto& folder : {folder_.path(), folder_.grain_parts(), folder_.fluid_parts()})
     io::take_up_indices(communicator_, folder, *continue_from_);
+  if (case_.output.series.every <= 0.0)
+    io::SeriesTable::drop_rows_after(communicator_, folder_.series(), *continue_from_);
 }
 
 // A restart counts on what lies beside the checkpoint.

@@ -115,6 +115,16 @@ void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::pa
   });
 }
 
+void SeriesTable::drop_rows_after(MPI_Comm communicator, const std::filesystem::path& path, double time) {
+  act(communicator, path, [&] {
+    if (!std::filesystem::exists(path)) return;
+    const std::string text = read_text(path);
+    const std::size_t end = text.find('\n');  // of the header
+    if (end != std::string::npos)
+      write_text_durably(path, text.substr(0, end + 1) + kept_rows(text, end + 1, time).text);
+  });
+}
+
 SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, SeriesColumns columns,
                          std::optional<double> continue_from)
     : communicator_(communicator), path_(std::move(path)), columns_(std::move(columns)) {

@@ -25,6 +25,9 @@ public:
   // Throws the InputError of the constructor, on every rank, before anything is written. Collective.
   static void check_columns(MPI_Comm communicator, const std::filesystem::path& path, const SeriesColumns& columns);
 
+  // Drops the rows of a file, if there is one, after a time (s): those of a run that no longer writes them. Collective.
+  static void drop_rows_after(MPI_Comm communicator, const std::filesystem::path& path, double time);
+
   // Appends a row, which is in the file when this returns; only rank 0's values are used. Throws std::logic_error, on
   // every rank, if the row has other columns.
   void append(double time, std::span<const Diagnostic> row);

@@ -109,14 +109,14 @@ analysis:
         self.assertEqual(self.files_of("run"), self.files_of("straight"))
 
     def test_records_that_are_no_longer_wanted_do_not_outlive_their_course(self):
-        """A restart that goes back without the tracks, and one that takes them up again: none of the course that was
-        left."""
+        """A restart that goes back without the tracks, the frames and the series: none of the course that was left."""
         self.run_well("run", self.case, "--out", "run", "--until", "0.03")
         self.run_well(
             "run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--out", "run", "--set",
-            "analysis={}", "--set", "output.grains.every=0", "--until", "0.022",
+            "analysis={}", "--set", "output.grains.every=0", "--set", "output.series.every=0", "--until", "0.022",
         )
         self.assertLessEqual(self.tracks("run")["time"].max(), 0.02)
+        numpy.testing.assert_allclose(self.series("run")["time"], 0.004 * numpy.arange(6), atol=1e-12)
         self.assertEqual(list(thalweg.Run(self.folder / "run").grains.times), [0.0, 0.01, 0.02])
         self.assertEqual(len(list((self.folder / "run/grains").iterdir())), 3)
 

@@ -65,6 +65,18 @@ TEST(SeriesTable, TellsThatRowsAreMissing) {
                                                         : "");
 }
 
+TEST(SeriesTable, RowsOfARunThatNoLongerWritesThemAreDropped) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "series.csv";
+  SeriesTable::drop_rows_after(MPI_COMM_WORLD, path, 0.2);  // without a file
+  EXPECT_FALSE(std::filesystem::exists(path));
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank_of(MPI_COMM_WORLD) == 0) testing::put(path, "time [s],height [m]\n0.1,1\n0.2,2\n0.3,3\n0.15,");
+  MPI_Barrier(MPI_COMM_WORLD);
+  SeriesTable::drop_rows_after(MPI_COMM_WORLD, path, 0.2);
+  EXPECT_EQ(contents(path), "time [s],height [m]\n0.1,1\n0.2,2\n");
+}
+
 TEST(SeriesTable, ARowWithOtherColumnsIsRefusedAndNotWritten) {
   const ScratchFolder folder;
   SeriesTable table(MPI_COMM_WORLD, folder / "series.csv", columns);
