@@ -110,17 +110,34 @@ void SectionReader::note_missing(const std::string& complaint) {
   if (missing_.empty()) missing_ = complaint;
 }
 
+// What to do about a key that the section does not have.
+std::string SectionReader::remedy_of_unknown(const std::string& key) const {
+  const std::string meant = nearest(key, known_);
+  if (!meant.empty()) return fmt::format("unknown key; did you mean {}?", joined_key(key_path_, meant));
+  return fmt::format("unknown key; {} {}", key_path_.empty() ? "a case has" : key_path_ + " has",
+                     known_.empty() ? "no keys" : fmt::format("the keys {}", fmt::join(known_, ", ")));
+}
+
 void SectionReader::refuse_unknown() const {
+  const auto has = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
   for (const auto& [key, node] : section_.entries) {
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (has(known_, key)) continue;
     if (node.kind == YamlNode::Kind::scalar && node.text.empty() &&
         std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
       fail(node, key, "a comma begins a new key here; write numbers with a point, as 9.81");
-    const std::string meant = nearest(key, known_);
-    if (!meant.empty()) fail(node, key, fmt::format("unknown key; did you mean {}?", joined_key(key_path_, meant)));
-    fail(node, key,
-         fmt::format("unknown key; {} {}", key_path_.empty() ? "a case has" : key_path_ + " has",
-                     known_.empty() ? "no keys" : fmt::format("the keys {}", fmt::join(known_, ", "))));
+    fail(node, key, remedy_of_unknown(key));
+  }
+  // A key that is taken out under a wrong name would stay what it is.
+  const std::string above = joined_key(key_path_, "");
+  for (const TakenOut& taken : document_.taken_out()) {
+    if (!taken.key_path.starts_with(above)) continue;
+    const std::string key = taken.key_path.substr(above.size(), taken.key_path.find('.', above.size()) - above.size());
+    if (has(known_, key) || has(elsewhere_, key)) continue;
+    const std::string remedy = remedy_of_unknown(key);
+    throw InputError(
+        fmt::format("{}: {}: {}{}", taken.place, joined_key(key_path_, key), remedy, remedy.ends_with('?') ? "" : "."));
   }
 }
 
@@ -313,9 +330,8 @@ void SectionReader::word_list(const std::string& key, std::vector<std::size_t>& 
 
 void SectionReader::not_here(const std::string& key, const std::string& reason) {
   const YamlNode* node = section_.find(key);
-  if (!node) return;
-  if (missing_.empty()) fail(*node, key, reason);
-  known_.push_back(key);  // what is missing may be why
+  if (node && missing_.empty()) fail(*node, key, reason);
+  (node ? known_ : elsewhere_).push_back(key);  // what is missing may be why it is here
 }
 
 void SectionReader::require(bool condition, const std::string& key, const std::string& remedy) {

@@ -53,6 +53,7 @@ private:
   void read_inside(const YamlNode& node, const std::string& key, const SectionKey& about, const Body& body);
   void note_missing(const std::string& complaint);
   void refuse_unknown() const;
+  std::string remedy_of_unknown(const std::string& key) const;
   [[noreturn]] void fail(const YamlNode& node, const std::string& key, const std::string& remedy) const;
 
   const YamlDocument& document_;
@@ -60,6 +61,7 @@ private:
   const YamlNode& section_;
   std::optional<std::string> shorthand_;  // the key that a plain value in place of the section stands for
   std::vector<std::string> known_;        // every key asked for, in order
+  std::vector<std::string> elsewhere_;    // keys that other cases have
   std::string missing_;                   // the complaint about the first required key that is not given, here or below
 };
 

@@ -248,17 +248,17 @@ void YamlDocument::apply(const std::string& override_text) {
         throw InputError(fmt::format("{}: {} is a list of {} and has no entry \"{}\"; count from 0.", place, done,
                                      node->items.size(), key));
     } else {
-      node->kind = YamlNode::Kind::section;
       next = entry_of(*node, key);
-      if (!next && !(last && remove)) {
+      if (remove && last) erase_entry(*node, key);
+      if (remove && (last || !next)) {  // no section comes into being that would have had the key
+        taken_out_.push_back({key_path, place});
+        return;
+      }
+      node->kind = YamlNode::Kind::section;
+      if (!next) {
         node->entries.push_back({key, {}});
         next = &node->entries.back().value;
         next->place = place;
-      }
-      if (last && remove) {
-        erase_entry(*node, key);
-        taken_out_.push_back(key_path);
-        return;
       }
     }
     node = next;
@@ -270,7 +270,7 @@ void YamlDocument::apply(const std::string& override_text) {
 LaidBeneath YamlDocument::lay_beneath(const YamlNode& other, const std::vector<std::string>& without) {
   LaidBeneath keys;
   std::vector<std::string> all = without;
-  all.insert(all.end(), taken_out_.begin(), taken_out_.end());
+  for (const TakenOut& key : taken_out_) all.push_back(key.key_path);
   lay_beneath(root_, other, "", all, keys);
   return keys;
 }

@@ -38,6 +38,11 @@ struct LaidBeneath {
   std::vector<std::string> added, left_out;
 };
 
+// A key that an override has taken out, whether the file has it or not.
+struct TakenOut {
+  std::string key_path, place;
+};
+
 class YamlDocument {
 public:
   // An empty document: its errors name no place.
@@ -54,6 +59,7 @@ public:
   LaidBeneath lay_beneath(const YamlNode& other, const std::vector<std::string>& without);
 
   const YamlNode& root() const { return root_; }
+  const std::vector<TakenOut>& taken_out() const { return taken_out_; }
   const std::filesystem::path& path() const { return path_; }
 
   // The absolute path of a file that a key gives relative to the document. Throws InputError where it is not UTF-8.
@@ -73,7 +79,7 @@ private:
 
   std::filesystem::path path_;
   YamlNode root_;
-  std::vector<std::string> taken_out_;  // key paths, by overrides
+  std::vector<TakenOut> taken_out_;
 };
 
 // The value as an error message shows it: "water" in quotes, a number bare, [0, 1] or "a section with 3 keys".

@@ -184,6 +184,13 @@ TEST(YamlSection, OverridesReplaceAddReachIntoListsAndRemove) {
   EXPECT_EQ(cart.lining->gloss, 0.25);
 }
 
+TEST(YamlSection, WhatIsNotThereCanBeTakenOutAndBringsNoSectionIntoBeing) {
+  EXPECT_EQ(read(minimal, {"lining.gloss=null", "cargo.mass=null", "name=null"}), read(minimal));
+  EXPECT_FALSE(read(minimal, {"lining.gloss=null"}).lining.has_value());
+  const Cart lined = read(minimal + "lining: {colour: green, gloss: 0.25}\n", {"lining.gloss=null"});
+  EXPECT_EQ(lined.lining, (Paint{Colour::green, Paint{}.gloss}));
+}
+
 struct Bad {
   std::string name, yaml, override_text, message;  // FILE stands for the path
 };
@@ -267,6 +274,10 @@ INSTANTIATE_TEST_SUITE_P(
             "--set length=far: length = \"far\": expected a number in m above 0, for example 2."},
         Bad{"override_unknown", minimal, "cargo.maas=1",
             "--set cargo.maas=1: cargo.maas = 1: unknown key; did you mean cargo.mass?"},
+        Bad{"override_takes_out_unknown", minimal, "cargo.maas=null",
+            "--set cargo.maas=null: cargo.maas: unknown key; did you mean cargo.mass?"},
+        Bad{"override_takes_out_of_unknown", minimal, "linning.gloss=null",
+            "--set linning.gloss=null: linning: unknown key; did you mean lining?"},
         Bad{"override_without_value", minimal, "length",
             "--set length: expected KEY=VALUE, for example --set run.until=10."},
         Bad{"override_index", minimal + "wheels: [{radius: 1}]\n", "wheels.1.radius=2",
