@@ -84,11 +84,11 @@ void RunOutput::add_fluid(const std::filesystem::path& folder, const std::string
         keys.every, io::FluidSeries(communicator_, folder, name, keys, keys.fields, keys.precision, continue_from_));
 }
 
-// Solids that all stand still have one frame.
+// Solids that all stand still have one frame; a restart may be the first to ask for it.
 void RunOutput::begin_solids() {
   if (case_.solids.empty() || solid_frames_every(case_).empty()) return;
   solids_.emplace(communicator_, folder_.path(), continue_from_);
-  if (!continue_from_ && !any_solid_moves(case_)) write_solids(system_.time(), system_.step());
+  if (!any_solid_moves(case_) && solids_->is_empty()) write_solids(system_.time(), system_.step());
 }
 
 // Once a step, for which frames of several kinds may be due.

@@ -1,5 +1,6 @@
 #include "io/vtk/solid_series.hpp"
 
+#include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/vtk/vtk_xml_file.hpp"
@@ -56,6 +57,8 @@ SolidSeries::SolidSeries(MPI_Comm communicator, const std::filesystem::path& fol
     : communicator_(communicator),
       folder_(folder),
       index_(communicator, folder / fmt::format("{}.pvd", name), continue_from) {}
+
+bool SolidSeries::is_empty() const { return !any_rank(communicator_, !index_.entries().empty()); }
 
 void SolidSeries::write(double time, std::int64_t step, const std::vector<TriangleMesh>& solids) {
   const auto file = std::filesystem::path(name) / fmt::format("{}_{:09d}.vtp", name, step);

@@ -25,6 +25,9 @@ public:
   // solids: in m, where they are at this time (s); looked at on the first rank.
   void write(double time, std::int64_t step, const std::vector<TriangleMesh>& solids);
 
+  // True if there is no frame yet, here or from before. Collective.
+  bool is_empty() const;
+
   // Makes the frames so far outlast a loss of power, as GrainSeries does.
   void put_on_disk() { index_.put_on_disk(); }
 

@@ -73,6 +73,16 @@ solids:
         )
         numpy.testing.assert_allclose(numpy.linalg.norm(ball - [0.0005, 0.0075, 0.0035], axis=1), 3.5e-3)
 
+    def test_a_restart_that_is_the_first_to_have_frames_shows_the_solids(self):
+        none = ("--set", "output.grains.every=0")
+        self.run_well("run", self.case, "--out", "run", "--until", "0.06", *none)
+        self.assertFalse((self.folder / "run/solids.pvd").exists())
+        self.run_well("run", self.case, "--restart", "run", "--until", "0.08", ranks=2)
+        (surfaces,) = Run(self.folder / "run").solids
+        self.assertEqual(sorted(numpy.unique(surfaces.solid)), [0, 1])
+        self.run_well("run", self.case, "--restart", "run", "--until", "0.09")   # one is enough
+        self.assertEqual(len(Run(self.folder / "run").solids), 1)
+
     def test_what_cannot_be_is_refused(self):
         self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [3, 0, 0]}",
                             words=["solids.0.motion", "0.4 cells a step", "fluid.time_step"])
