@@ -24,13 +24,14 @@ namespace thalweg::io {
 namespace fs = std::filesystem;
 namespace {
 
-// All a run writes, and thalweg analyze; --overwrite removes these and nothing else. Records were files in older
+// All a run writes, and thalweg analyze; --overwrite removes these and nothing else. A request to stop is taken away
+// with the lock of the folder: one that is there later concerns the run that begins. Records were files in older
 // versions.
 constexpr std::array run_contents{"case.yaml",  "series.csv",   "profiles.h5", "probes",      "tracks",
                                   "reach",      "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5",
                                   "grains.pvd", "fluid.pvd",    "solids.pvd",  "grains",      "fluid",
                                   "solids",     "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",
-                                  "run.log",    "summary.json", "analysis",    "stop"};
+                                  "run.log",    "summary.json", "analysis"};
 // Entries that a continued run changes in place: folders, and files that are not replaced as a whole.
 constexpr std::array added_to{"checkpoints", "grains",     "fluid",     "solids",    "fluid_parts",
                               "grain_parts", "run.log",    "probes",    "tracks",    "reach",

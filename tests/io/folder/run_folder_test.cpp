@@ -51,6 +51,16 @@ TEST_F(RunFolderTest, AnExistingRunNeedsOverwriteAndIsOtherwiseUntouched) {
   EXPECT_EQ(contents(path / "notes.txt"), "mine");
 }
 
+TEST_F(RunFolderTest, ARequestToStopTheRunThatBeginsOutlastsTheOldResults) {
+  const RunFolder folder(scratch("asked"));
+  folder.create(false);
+  folder.write_case("thalweg 0.1.0", "system: grains\n");
+  put(folder.stop(), "");
+  folder.create(true);
+  EXPECT_FALSE(fs::exists(folder.case_file()));
+  EXPECT_TRUE(fs::exists(folder.stop()));
+}
+
 TEST_F(RunFolderTest, APlaceThatCannotBeWrittenIsRefusedBeforeAnythingIsMade) {
   const fs::path path = scratch("no_folder");
   put(path, "a file");
