@@ -35,8 +35,10 @@ bool is_finished(const io::RunFolder& folder, double until) {
 double wanted_end(const fs::path& case_file, const std::vector<std::string>& settings) {
   const io::YamlDocument document(case_file, settings);
   double end = std::numeric_limits<double>::infinity();
-  if (const io::YamlNode* until = document.find("run.until"))
-    std::from_chars(until->text.data(), until->text.data() + until->text.size(), end);
+  if (const io::YamlNode* until = document.find("run.until")) {
+    const char* first = until->text.data();
+    std::from_chars(first + (until->text.starts_with('+') ? 1 : 0), first + until->text.size(), end);
+  }
   return end;
 }
 

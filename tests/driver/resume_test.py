@@ -46,7 +46,7 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             self.assertIn(f"resuming from {out}/checkpoints/step_32.h5", said)
             self.assertEqual(self.last_checkpoint(out).read_bytes(), straight)
             before = self.state()
-            for more in ((), ("--until", "0.02"), ("--until", "0.01")):
+            for more in ((), ("--until", "0.02"), ("--until", "0.01"), ("--set", "run.until=+0.02")):
                 self.assert_left_alone(self.resume(*more, out=out), before, out)
             self.assert_left_alone(self.resume(out=out, ranks=2), before, out)
 
