@@ -121,8 +121,10 @@ GrainSizes sizes_of(const Experiment& experiment) {
   std::size_t n = 1;
   while (n + 1 < sieve.size() && sieve[n].finer < 0.5) ++n;
   const double share = (0.5 - sieve[n - 1].finer) / (sieve[n].finer - sieve[n - 1].finer);
-  return {sieve.front().size, sieve[n - 1].size * std::pow(sieve[n].size / sieve[n - 1].size, share),
-          sieve.back().size};
+  // Of several sieves that let nothing pass, or all, one bounds the grains.
+  const auto smallest = std::find_if(sieve.rbegin(), sieve.rend(), [](const SievePoint& p) { return p.finer == 0.0; });
+  const auto largest = std::find_if(sieve.begin(), sieve.end(), [](const SievePoint& p) { return p.finer == 1.0; });
+  return {smallest->size, sieve[n - 1].size * std::pow(sieve[n].size / sieve[n - 1].size, share), largest->size};
 }
 
 std::vector<SievePoint> parse_sieve(const std::string& text) {

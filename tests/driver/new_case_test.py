@@ -171,6 +171,16 @@ class NewCase(ProgramTest):
         self.assertAlmostEqual(length, 0.1, delta=0.51 * domain["spacing"])
         self.assertLess(width, 0.029)
 
+    def test_sieves_that_let_nothing_or_all_pass_change_nothing(self):
+        def case_of(sieve):
+            written = self.new("--sieve", sieve, "--shields", 0.05, "--depth", 0.03, "--accuracy", "look")
+            self.assertEqual(written.returncode, 0, written.stderr)
+            case = yaml.safe_load(self.case.read_text())
+            del case["grains"][0]["diameter"]
+            return case
+
+        self.assertEqual(case_of("0.001:0,0.002:0,0.004:1,0.016:1"), case_of("0.002:0,0.004:1"))
+
     def test_viscous_fluids(self):
         """Of a slow flow drag is within some percent with trt, links cli and no subgrid model (docs/input.md, "Links"),
         and check has no warning; also where the step is at its limit, tau - 1/2 = 0.15."""
