@@ -18,7 +18,7 @@ std::string yaml_text(const std::string& text) {
   for (const char c : text) {
     if (c == '"' || c == '\\')
       result += fmt::format("\\{}", c);
-    else if (static_cast<unsigned char>(c) < 0x20)
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)  // which the reader refuses
       result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     else
       result += c;

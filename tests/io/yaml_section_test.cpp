@@ -116,7 +116,7 @@ const std::string minimal = "paint: red\nlength: 2.5\n";
 
 Cart full_cart() {
   Cart cart;
-  cart.name = "a \"quoted\" name: # \\ \xc3\xa4";
+  cart.name = "a \"quoted\" name: # \\ \xc3\xa4 \x7f\x1b";
   cart.length = 1.0 / 3.0;
   cart.position = {0.1 + 0.2, 1e-300, 3.0};
   cart.seats = 5;
