@@ -23,11 +23,20 @@ std::string file_without_ending(const ClumpOrder& order) {
   return order.out.empty() ? std::filesystem::path(order.surface).stem().string() + "_clump" : order.out;
 }
 
+constexpr const char* head_of_shape = "shape:\n";
+
+// A shape of before is replaced; a case or anything else is its owner's.
+void refuse_other_file(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !io::read_text(path).starts_with(head_of_shape))
+    throw InputError(fmt::format("{} exists and is no shape of a grain: give another name with --out.", path));
+}
+
 std::string vector_text(const Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
 
 // The keys of a shape that needs no STL file any more, as a case keeps them.
 std::string shape_yaml(const beds::MeshClump& clump) {
-  std::string text = "shape:\n  clump:\n";
+  std::string text = std::string(head_of_shape) + "  clump:\n";
   for (const dem::PlacedSphere& sphere : clump.spheres)
     text += fmt::format("    - {{position: {}, diameter: {}}}\n", vector_text(sphere.position), 2.0 * sphere.radius);
   std::string inertia;
@@ -77,6 +86,8 @@ std::vector<std::string> lines_of_clump(const TriangleMesh& mesh, const beds::Me
 }  // namespace
 
 std::vector<std::string> clump_report(const ClumpOrder& order) {
+  const std::string out = file_without_ending(order);
+  refuse_other_file(out + ".yaml");
   TriangleMesh mesh = io::read_stl(order.surface);
   for (Vec3& point : mesh.points) point *= order.scale;
   beds::MeshClump clump;
@@ -88,7 +99,6 @@ std::vector<std::string> clump_report(const ClumpOrder& order) {
   std::vector<std::string> lines = lines_of_surface(order, mesh, clump);
   const std::vector<std::string> of_clump = lines_of_clump(mesh, clump);
   lines.insert(lines.end(), of_clump.begin(), of_clump.end());
-  const std::string out = file_without_ending(order);
   std::error_code ignored;  // writing says what is wrong
   if (const auto folder = std::filesystem::path(out).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, ignored);

@@ -137,6 +137,10 @@ output: {checkpoint: {every: 0.01}}
         axes = numpy.array([float(axis) for axis in figures["axes"].strip(" ,").split(", ")])
         self.assertLess(abs(axes / (DIAMETER * 2.0 ** (-1.0 / 3.0) * numpy.array([2.0, 1.0, 1.0])) - 1.0).max(), 5e-3)
         self.assertEqual((self.folder / "prolate_clump.yaml").read_text().count("diameter"), 5)
+        self.thalweg("clump", "prolate.stl", "--spheres", "4", "--scale", str(DIAMETER))   # replaces its own
+        self.assertEqual((self.folder / "prolate_clump.yaml").read_text().count("diameter"), 4)
+        self.assert_refused("clump", "prolate.stl", "--spheres", "4", "--scale", str(DIAMETER), "--out", "case",
+                            words=["case.yaml exists and is no shape"])
 
     def test_what_cannot_be_is_refused(self):
         (self.folder / "cut.stl").write_bytes((self.folder / "pebble.stl").read_bytes()[:-100])
