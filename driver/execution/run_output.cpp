@@ -1,12 +1,16 @@
 #include "driver/execution/run_output.hpp"
 
+#include "core/base/error.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/input/run_context.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"
+#include "io/hdf5/hdf5_archive.hpp"
 #include "io/hdf5/profile_file.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -24,6 +28,18 @@ static std::vector<Diagnostic> constants_of(const Case& c) {
 static std::vector<Diagnostic> joined(std::vector<Diagnostic> row, const std::vector<Diagnostic>& constants) {
   row.insert(row.end(), constants.begin(), constants.end());
   return row;
+}
+
+// Removes a file of results that is from after a time (s) by an attribute of its own.
+static void remove_if_later(const std::filesystem::path& file, const std::string& attribute, double time) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return;
+  try {
+    if (io::Hdf5Reader(file).real_attribute(attribute) <= time) return;
+  } catch (const InputError&) {  // whatever is in it, it is not of this state
+  }
+  if (!std::filesystem::remove(file, error) && error)
+    throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
 }
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,
@@ -141,12 +157,14 @@ void RunOutput::add_records() {
   for (ObserverRecords& records : records_) records.parts.add(records.observer->take_records(), system_.step());
 }
 
-// Frames, records and rows that the run no longer writes are dropped as well: they belong to the course that it has
-// left.
+// Frames, records, rows, profiles and the bed that the run no longer writes are dropped as well: they belong to the
+// course that it has left.
 void RunOutput::drop_what_is_later() const {
   on_first_rank(communicator_, [&] {
     for (const std::string& name : io::RunFolder::names_of_records())
       io::drop_parts_after(folder_.records(name), system_.step());
+    remove_if_later(folder_.profiles(), "time", *continue_from_);
+    remove_if_later(folder_.bed(), "bed/time", *continue_from_);
   });
   for (const auto& folder : {folder_.path(), folder_.grain_parts(), folder_.fluid_parts()})
     io::take_up_indices(communicator_, folder, *continue_from_);

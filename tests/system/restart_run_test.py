@@ -133,6 +133,7 @@ output: {series: {every: 0.01}}
         process = self.begin("--restart", "run/checkpoints/step_100.h5", *other)
         latest = self.folder / "run/checkpoints/latest"
         self.wait_until(lambda: latest.read_text() == "step_100.h5\n")
+        self.wait_until(lambda: not (self.folder / "run/bed.h5").exists())   # of the course that was left
         process.kill()   # before it has a checkpoint of its own
         process.wait()
         said = self.run_well("run", self.case, "--restart", "run", "--until", "0.12", *other).stdout

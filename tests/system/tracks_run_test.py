@@ -110,7 +110,8 @@ analysis:
 
     def test_records_that_are_no_longer_wanted_do_not_outlive_their_course(self):
         """A restart that goes back without the tracks, the frames and the series: none of the course that was left."""
-        self.run_well("run", self.case, "--out", "run", "--until", "0.03")
+        self.run_well("run", self.case, "--out", "run", "--until", "0.03", "--set", "analysis.grain_profiles={}")
+        self.assertTrue((self.folder / "run/profiles.h5").exists())
         self.run_well(
             "run", self.case, "--restart", self.folder / "run/checkpoints/step_200.h5", "--out", "run", "--set",
             "analysis={}", "--set", "output.grains.every=0", "--set", "output.series.every=0", "--until", "0.022",
@@ -119,6 +120,7 @@ analysis:
         numpy.testing.assert_allclose(self.series("run")["time"], 0.004 * numpy.arange(6), atol=1e-12)
         self.assertEqual(list(thalweg.Run(self.folder / "run").grains.times), [0.0, 0.01, 0.02])
         self.assertEqual(len(list((self.folder / "run/grains").iterdir())), 3)
+        self.assertFalse((self.folder / "run/profiles.h5").exists())
 
     def test_overwrite_begins_anew(self):
         self.run_well("run", self.case, "--out", "straight", "--until", "0.01")
