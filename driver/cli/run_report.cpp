@@ -13,6 +13,7 @@
 #include "driver/warnings/case_warnings.hpp"
 #include "loop/progress.hpp"
 #include "loop/stop_request.hpp"
+#include "loop/time_loop.hpp"
 
 #include <fmt/format.h>
 
@@ -21,11 +22,10 @@ namespace thalweg::driver {
 void print_header(const Case& c, RunIdentity& identity, const System& system, const io::RunFolder& folder,
                   const StartPoint& start_point, double bandwidth, MPI_Comm communicator, loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
-  log.line(
-      fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {:.0f} steps to {:g} s",
-                  identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
-                  identity.layout[1], identity.layout[2], system.snapshot().grains.body_count(), system.cells(),
-                  system.time_step(), c.run.until / system.time_step(), c.run.until));
+  log.line(fmt::format("{} on {} rank{}, layout {} x {} x {}; {} grains, {} cells; {:.6g} s a step, {} steps to {:g} s",
+                       identity.system, identity.ranks, identity.ranks == 1 ? "" : "s", identity.layout[0],
+                       identity.layout[1], identity.layout[2], system.snapshot().grains.body_count(), system.cells(),
+                       system.time_step(), loop::final_step(c.run.until, system.time_step()), c.run.until));
   if (const std::string text = partition_text(c, *system.snapshot().decomposition); !text.empty()) log.line(text);
   for (const std::string& damage : start_point.damage) log.line("warning: " + damage);
   if (!start_point.checkpoint.empty())

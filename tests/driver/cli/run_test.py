@@ -45,11 +45,12 @@ class Running(ProgramTest):
         before = (run / "summary.json").read_bytes()
         self.assert_refused("run", self.case, words=["--overwrite", "--restart"])
         self.assertEqual((run / "summary.json").read_bytes(), before)
-        self.run_well("run", self.case, "--overwrite", "--until", "0.01", "--set", "analysis.transport_rate={}")
-        self.assertEqual(self.summary("run")["steps"], 50)
+        shorter = ("--until", "0.01005", "--set", "analysis.transport_rate={}")   # not a whole number of steps
+        self.assertIn(" 51 steps to 0.01005 s", self.run_well("run", self.case, "--overwrite", *shorter).stdout)
+        self.assertEqual(self.summary("run")["steps"], 51)
 
         self.assertIn("finished", self.run_well("info", run).stdout)
-        self.assertIn("step 50", self.run_well("info", self.last_checkpoint("run")).stdout)
+        self.assertIn("step 51", self.run_well("info", self.last_checkpoint("run")).stdout)
         self.assert_refused("info", self.case, words=["case.yaml"])
 
     def test_the_case_as_run_runs_again_with_the_same_bits(self):
