@@ -48,8 +48,8 @@ class LayerSums:
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
         self.height, self.thickness = height, thickness
         layers = len(edges) - 1
-        self.frames, self.volume = 0, np.zeros(layers)
-        self.momentum, self.square = np.zeros((layers, 3)), np.zeros(layers)
+        self.frames, self.volume, self.flux = 0, np.zeros(layers), np.zeros((layers, 3))
+        self.mass, self.momentum, self.square = np.zeros(layers), np.zeros((layers, 3)), np.zeros(layers)
         self.stresses = {}
 
     def parts(self, z, radius):
@@ -74,8 +74,11 @@ class LayerSums:
             self.taken = self.taken + self.union
             part[:, stands] = 0.0
         self.volume += part.sum(axis=1)
-        self.momentum += part @ frame.velocity
-        self.square += part @ np.sum(frame.velocity**2, axis=1)
+        self.flux += part @ frame.velocity
+        mass = part * frame.arrays.get("density", 1.0)   # frames whose fields leave it out weigh by volume
+        self.mass += mass.sum(axis=1)
+        self.momentum += mass @ frame.velocity
+        self.square += mass @ np.sum(frame.velocity**2, axis=1)
         for name in ("contact_stress", "fluid_stress"):
             if name in frame.arrays:
                 sums = self.stresses.setdefault(name, np.zeros((len(part), 9)))
@@ -90,17 +93,18 @@ class LayerSums:
         return np.isin(frame.id, self.obstacle_ids)
 
     def profiles(self):
-        """Columns over z, the middle of the layers: solid fraction, velocity (NaN where no grain was), flux, granular
-        temperature (sum V |v|^2/sum V - |U|^2)/3 over grains and frames, stresses weighted with the solid fraction, and
-        of the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec. 2.4)."""
+        """Columns over z, the middle of the layers: solid fraction, velocity by mass (NaN where no grain was), flux by
+        volume, granular temperature (sum m |v|^2/sum m - |U|^2)/3 over grains and frames, stresses weighted with the
+        solid fraction, and of the fluid's on grains the rotation stress sigma_xz - sigma_zx (Zhang et al. 2022, sec.
+        2.4)."""
         if self.frames == 0:
             raise RunFolderError("there is no frame of the grains in this time.")
         whole = np.maximum(self.frames * self.layer_volumes - self.taken, 1e-9 * self.frames * self.layer_volumes)
-        volume = np.where(self.volume > 1e-9 * whole, self.volume, np.nan)
-        velocity = self.momentum / volume[:, None]
+        mass = np.where(self.volume > 1e-9 * whole, self.mass, np.nan)
+        velocity = self.momentum / mass[:, None]
         found = {"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "solid_fraction": self.volume / whole,
-                 "velocity": velocity, "flux": self.momentum / whole[:, None],
-                 "granular_temperature": (self.square / volume - np.sum(velocity**2, axis=1)) / 3.0}
+                 "velocity": velocity, "flux": self.flux / whole[:, None],
+                 "granular_temperature": (self.square / mass - np.sum(velocity**2, axis=1)) / 3.0}
         for name, sums in self.stresses.items():
             found[name] = (sums / whole[:, None]).reshape(-1, 3, 3)
         if "fluid_stress" in found:

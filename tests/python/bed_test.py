@@ -52,6 +52,19 @@ class Layers(made_up.MadeUpFolder):
         np.testing.assert_allclose(found["granular_temperature"][:2], 1 / 3, rtol=1e-12)
         np.testing.assert_allclose(found["rotation_stress"], np.array([3.0, 3.0, 0.0]) * fraction, rtol=1e-12)
 
+    def test_velocity_by_mass_and_flux_by_volume(self):
+        # Equal spheres of 1000 and 3000 kg/m^3 at 1 and 3 m/s along x: velocity (1 + 3 * 3)/4 = 2.5, temperature a third
+        # of the variance (1 + 3 * 9)/4 - 2.5^2 = 0.75, flux the mean of both, 2, times the solid fraction.
+        place = np.array([[[0.01, 0.005, D], [0.05, 0.005, D]]])
+        velocity = np.array([[[1.0, 0, 0], [3.0, 0, 0]]])
+        self.write_frames((0.0,), place, velocity=velocity, density=np.array([[1000.0, 3000.0]]))
+        sums = LayerSums(np.array([0.0, D, 2 * D]), SIZE[0] * SIZE[1])
+        sums.add(thalweg.Run(self.folder).grains[0])
+        found = sums.profiles()
+        np.testing.assert_allclose(found["velocity"][:, 0], 2.5, rtol=1e-12)
+        np.testing.assert_allclose(found["granular_temperature"], 0.25, rtol=1e-12)
+        np.testing.assert_allclose(found["flux"][:, 0], 2.0 * found["solid_fraction"], rtol=1e-12)
+
     def test_disks_in_layers_as_wide_as_they_are_thick(self):
         # pi/4 of a square array, whatever the width of the box.
         case = self.folder / "case.yaml"
