@@ -142,11 +142,24 @@ std::int64_t GrainDynamics::contact_count() const {
   return sum_over_ranks(communicator_, count);
 }
 
+// Calls visit(touch, overlap in diameters) for every grain of this rank that is not held and reaches into a wall or a
+// solid. A grain that is held does so on purpose.
+template <typename Visitor>
+void GrainDynamics::for_each_wall_overlap(Visitor&& visit) const {
+  const auto look = [&](const WallTouch& touch) {
+    const double radius = store_.radius[touch.slot], overlap = radius - touch.view.distance;
+    if (overlap > 0.0 && !holds_translation(store_.motion[touch.slot])) visit(touch, overlap / (2.0 * radius));
+  };
+  for_each_wall_touch(store_, list_, surroundings(), look);
+  for_each_solid_touch(store_, list_, surroundings(), 0.0, look);
+}
+
 double GrainDynamics::largest_overlap() const {
   double largest = 0.0;
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3&) {
     largest = std::max(largest, overlap_in_diameters(store_, c, overlap));
   });
+  for_each_wall_overlap([&](const WallTouch&, double overlap) { largest = std::max(largest, overlap); });
   return max_over_ranks(communicator_, largest);
 }
 
@@ -155,6 +168,9 @@ std::optional<Location> GrainDynamics::place_of_deepest_overlap() const {
   for_each_touching(list_, store_, box_, [&](const PairContact& c, double overlap, const Vec3& separation) {
     deepest.consider({overlap_in_diameters(store_, c, overlap), store_.id[c.first], store_.id[c.second],
                       box_.wrapped(store_.position[c.second] + 0.5 * separation)});
+  });
+  for_each_wall_overlap([&](const WallTouch& touch, double overlap) {
+    deepest.consider({overlap, store_.id[touch.slot], -1, store_.position[touch.slot]});
   });
   return deepest.over_ranks(communicator_);
 }

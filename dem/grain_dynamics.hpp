@@ -197,19 +197,21 @@ public:
   // overlap and contacts are those of its members. Collective.
   std::vector<Vec3> wall_forces() const;  // N, of all grains on each wall, then each solid, by contacts and lubrication
   std::int64_t contact_count() const;     // touching pairs of grains
-  double largest_overlap() const;         // largest of two grains, not both held, in diameters of the smaller
-  double kinetic_energy() const;          // J, with rotation
-  Vec3 momentum() const;                  // kg m/s
-  double largest_speed() const;           // m/s
-  double largest_free_speed() const;      // m/s, of grains that are free to move
-  double largest_acceleration() const;    // m/s^2, of the same, by all forces at the end of the last step
+  // Largest of two grains, not both held, in diameters of the smaller, and of one that is not held with a wall or a
+  // solid.
+  double largest_overlap() const;
+  double kinetic_energy() const;                  // J, with rotation
+  Vec3 momentum() const;                          // kg m/s
+  double largest_speed() const;                   // m/s
+  double largest_free_speed() const;              // m/s, of grains that are free to move
+  double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
   double moving_share(double speed) const;        // share of the free grains; 0 if there are none
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
   std::int64_t restless_count(double speed, double acceleration) const;
 
-  // Locations of these two diagnostics: the pair that overlaps most, and the grain or clump (by its first member) with
-  // the largest speed; among equals the lowest ids. Empty if there is none. Collective.
+  // Locations of these two diagnostics: the pair, or the grain in a wall, that overlaps most, and the grain or clump
+  // (by its first member) with the largest speed; among equals the lowest ids. Empty if there is none. Collective.
   std::optional<Location> place_of_deepest_overlap() const;
   std::optional<Location> place_of_fastest() const;
 
@@ -245,6 +247,8 @@ private:
   double ghost_reach() const;
   template <typename Visitor>
   void for_each_body(Visitor&& visit) const;
+  template <typename Visitor>
+  void for_each_wall_overlap(Visitor&& visit) const;
   void take_seeds(GrainSeeds seeds);
   void check_kinds(std::span<const GrainSeed> grains) const;
   void check_integrator() const;

@@ -252,7 +252,7 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
       allowed = std::max(allowed, grains.placement.largest_overlap.value_or(beds::PlacementKeys::bed_overlap));
   rules.push_back({"largest_overlap", Side::above,
                    always(std::max(suspicious_overlap, 2.0 * allowed), std::max(impossible_overlap, 2.0 * allowed)),
-                   "the largest overlap of two grains in diameters",
+                   "the largest overlap of a grain with another or with a wall in diameters",
                    fmt::format("The contacts are too soft for the load or the speed, or grains were placed into each "
                                "other: {}, or check grains.0.placement.",
                                change_of_contacts(c, Contacts::stiffer))});

@@ -65,6 +65,21 @@ TEST(Stack, TenSpheresCarryWhatLiesOnThem) {
   EXPECT_LT(grains.largest_speed(), 1e-9);
 }
 
+// Of a grain that lies on the floor m g/(k_n d), with nothing else to touch; a held one is in the floor on purpose.
+TEST(Overlap, OfAGrainWithTheFloorCounts) {
+  const ContactParameters contact = test::glass(0.3);
+  GrainSeed held = test::glass_sphere(1, Vec3(0.04, 0.04, 0.5 * test::glass_radius));
+  held.motion = Motion::fixed;
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, on_floor(contact, Vec3(0, 0, -g)),
+                       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius)), held});
+  for (int n = 0; n < 3000; ++n) test::step(grains);
+  const double sag = glass_mass() * g / contact.normal_stiffness / (2.0 * test::glass_radius);
+  EXPECT_NEAR(grains.largest_overlap() / sag, 1.0, 1e-6);
+  const std::optional<Location> place = grains.place_of_deepest_overlap();
+  ASSERT_TRUE(place.has_value());
+  EXPECT_EQ(place->grains, std::vector<GlobalId>{0});
+}
+
 // The floor carries the weight of all, and each wall of a trough tilted by 45 degrees its share of one sphere.
 TEST(WallForces, AreTheWeightOfWhatLiesOnThem) {
   GrainParameters p = on_floor(test::glass(0.3), Vec3(0, 0, -g));
