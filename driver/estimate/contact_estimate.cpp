@@ -59,15 +59,18 @@ double speed_of_a_fall(const Case& c) {
 
 double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), given_speed(c)); }
 
+// Effective mass of a contact over the mass of a grain: of two equal grains, and of a grain and a wall.
+constexpr double of_two = 0.5, with_wall = 1.0;
+
 // Adds those of a population with contacts of this material: of its smallest grains and of its largest, whose contacts
-// are softer for their size by the linear law. height: m, of the settled bed.
+// are softer for their size by the linear law. height: m, of the settled bed. share: of_two or with_wall.
 void add_overlaps(const Case& c, const beds::Population& grains, const dem::ContactParameters& material, double height,
-                  Overlaps& found) {
+                  double share, Overlaps& found) {
   const double pressure = settled_fraction(c) * std::abs(submerged_density(c, grains.density)) *
                           std::abs(gravity_vector(c.gravity).z()) * height;
   for (const double ratio : {1.0, largest_over_smallest(grains)}) {
     const double d = ratio * grains.smallest_diameter();
-    const double mass = 0.5 * grains.lightest_mass() * ratio_of_masses(grains, ratio);
+    const double mass = share * grains.lightest_mass() * ratio_of_masses(grains, ratio);
     const double width = c.disks ? c.disks->thickness : d;
     if (!periodic_axes(c.domain)[2])
       found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * width, d) / d);
@@ -84,7 +87,12 @@ Overlaps expected_overlaps(const Case& c) {
   const std::vector<dem::ContactParameters> materials = beds::materials_of(c.contact, c.grains);
   const double height = settled_height(c);
   for (std::size_t p = 0; p < c.grains.size(); ++p)
-    add_overlaps(c, c.grains[p], materials[static_cast<std::size_t>(beds::material_of(c.grains, p))], height, found);
+    add_overlaps(c, c.grains[p], materials[static_cast<std::size_t>(beds::material_of(c.grains, p))], height, of_two,
+                 found);
+  // Of walls softer than the grains: by the law of elastic spheres grain and wall share the overlap.
+  const std::optional<dem::ContactParameters> walls = beds::wall_material_of(c.contact);
+  if (walls && c.contact.law == dem::Law::linear)
+    for (const beds::Population& grains : c.grains) add_overlaps(c, grains, *walls, height, with_wall, found);
   return found;
 }
 
@@ -95,7 +103,7 @@ double least_stiffness(const Case& c) {
   Overlaps found{0.0, 0.0, impact_speed(c)};
   const double height = settled_height(c);
   for (const beds::Population& grains : c.grains)
-    if (!grains.contact || !grains.contact->normal_stiffness) add_overlaps(c, grains, unit, height, found);
+    if (!grains.contact || !grains.contact->normal_stiffness) add_overlaps(c, grains, unit, height, of_two, found);
   return stiffness_margin *
          std::max(found.under_weight / deep_under_weight, std::pow(found.in_impact / deep_in_impact, 2));
 }

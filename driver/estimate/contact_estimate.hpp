@@ -7,10 +7,11 @@
 
 namespace thalweg::driver {
 
-// Overlaps of the softest contact between two grains of a population, over their diameter; 0 without grains.
+// Overlaps of the softest contact between two grains of a population, or with walls that have a material of their own
+// (linear law), over their diameter; 0 without grains.
 struct Overlaps {
   double under_weight;  // at the base of the settled bed: each grain carries the weight above its own d^2
-  double in_impact;     // of two free grains at `speed`
+  double in_impact;     // of two free grains, or of one with a wall, at `speed`
   double speed;         // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
 };
 Overlaps expected_overlaps(const Case& c);

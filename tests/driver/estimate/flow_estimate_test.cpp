@@ -387,6 +387,19 @@ TEST(Overlaps, OfLinearAndOfElasticContacts) {
   EXPECT_NEAR(8.0 / 15.0 * modulus * std::sqrt(0.25 * d) * std::pow(elastic.in_impact * d, 2.5), energy, 1e-9 * energy);
 }
 
+// A grain that meets a wall has twice the effective mass of two grains: v sqrt(m/k) and, under the bed, p d^2/k.
+TEST(Overlaps, OfSofterWallsAreTheirs) {
+  Case c = wide_bed();
+  c.contact.normal_stiffness = 20000.0;
+  const Overlaps of_grains = expected_overlaps(c);
+  c.contact.walls.emplace();
+  c.contact.walls->normal_stiffness = 100.0;
+  const Overlaps with_walls = expected_overlaps(c);
+  EXPECT_NEAR(with_walls.in_impact, std::sqrt(2.0 * 200.0) * of_grains.in_impact, 1e-9 * with_walls.in_impact);
+  EXPECT_NEAR(with_walls.under_weight, 200.0 * of_grains.under_weight, 1e-9 * with_walls.under_weight);
+  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
+}
+
 // By the linear law those of the largest grains: under the pressure p of the bed p d/k of a diameter. A few fine grains
 // change nothing.
 TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
