@@ -109,13 +109,28 @@ def is_obstructed(run):
     return bool(run.case.get("solids")) or (len(run.grains) > 0 and bool(obstacles(run, run.grains[0]).any()))
 
 
+def share_of_gravity(run, start=-np.inf, stop=np.inf):
+    """Mean of gravity between two times (s) over its full value: below 1 while `run.ramp` raises it as 3 x^2 - 2 x^3 of
+    its duration. 1 where no times are given."""
+    duration = float((run.case.get("run") or {}).get("ramp") or 0.0)
+    if not duration > 0.0 or not np.isfinite([start, stop]).any():
+        return 1.0
+    first, last = max(start, 0.0), min(stop, float(run.series["time"][-1]))
+
+    def impulse(time):
+        x = min(time / duration, 1.0)
+        return duration * (x**3 - 0.5 * x**4) + max(time - duration, 0.0)
+    return (impulse(last) - impulse(first)) / (last - first) if last > first else 1.0
+
+
 def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
     """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and
-    slope, or by hydraulic radius beside side walls; else, and where obstacles stand in the flow, the mean between two
-    times (s) of what the run measured for the surface by solid fraction, and for another one as much more as its
-    hydraulic radius is larger. RunFolderError where that cannot be said, because the top drags on the flow as well."""
+    slope, or by hydraulic radius beside side walls, with the mean gravity between two times (s); else, and where
+    obstacles stand in the flow, the mean between them of what the run measured for the surface by solid fraction, and
+    for another one as much more as its hydraulic radius is larger. RunFolderError where that cannot be said, because
+    the top drags on the flow as well."""
     if run.driven_by_slope and not is_obstructed(run):
-        return shields_of(
+        return share_of_gravity(run, start, stop) * shields_of(
             run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
         )
     measured = measured_shields_number(run, start, stop)

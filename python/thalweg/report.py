@@ -170,6 +170,9 @@ def describe_surface(report, name, title, surface):
     how = "by the forces on the water, as measured"
     if run.driven_by_slope and not bed.is_obstructed(run):
         how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
+        share = bed.share_of_gravity(run, report.start, report.stop)
+        if share < 1.0:
+            how += f", with {100.0 * share:.3g} % of gravity on average during its ramp"
     try:
         shields = float(
             bed.shields_number(run, surface, report.start, report.stop, name == "surface_by_solid_fraction")

@@ -265,6 +265,18 @@ class Layers(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "no measurement from 2 s on"):
             bed.transport_rate(thalweg.Run(self.folder), 2.0)
 
+    def test_the_shields_number_while_gravity_rises(self):
+        # The mean of 3 x^2 - 2 x^3 over the ramp of 2 s is a half, over its first second x^3 - x^4/2 at x = 1/2, twice:
+        # 3/16; over 4 s it is (1 + 2)/4.
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "run: {until: 4, ramp: 2}\n")
+        (self.folder / "series.csv").write_text("time [s]\n0\n2\n4\n")
+        run = thalweg.Run(self.folder)
+        full = bed.shields_number(run, 10 * D)
+        self.assertAlmostEqual(full, bed.shields_of(0.0748, SIZE[2] - 10 * D, D, 2.55, SIZE[1]), 12)
+        for start, stop, share in ((0, 2, 0.5), (0, 1, 3 / 16), (0, np.inf, 0.75), (2, 4, 1.0), (-np.inf, 2, 0.5)):
+            self.assertAlmostEqual(bed.shields_number(run, 10 * D, start, stop) / full, share, 12)
+
     def test_rows_without_a_number_do_not_count(self):
         """As of a bed that reached the top of the box for a moment."""
         (self.folder / "series.csv").write_text("time [s],q_star [1],shields_number [1]\n"
