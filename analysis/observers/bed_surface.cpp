@@ -1,6 +1,7 @@
 #include "analysis/observers/bed_surface.hpp"
 
 #include "analysis/observer/mean_observer.hpp"
+#include "core/base/ramp.hpp"
 #include "core/geometry/hydraulic_radius.hpp"
 #include "core/state/whole_dataset.hpp"
 
@@ -91,8 +92,7 @@ void BedSurface::measure(const Snapshot& snapshot, bool again) {
   bed_height_ = bed.height;
   if (!flow_ || flow_->shields_stress <= 0.0) return;
   if (again && needs_momentum() && snapshot.momentum == nullptr) return;  // that of the checkpoint
-  const double risen = snapshot.time < flow_->ramp ? snapshot.time / flow_->ramp : 1.0;
-  bed_stress_ = risen * flow_->driving_stress * hydraulic_radius();
+  bed_stress_ = ramp_at(snapshot.time, flow_->ramp) * flow_->driving_stress * hydraulic_radius();
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
   const double plan = box_.size.x() * box_.size.y(), width = layers_.width();

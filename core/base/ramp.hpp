@@ -17,4 +17,11 @@ inline double ramp_mean(double from, double to, double duration) {
   return ((b - a) * duration * rising + std::max(0.0, to - duration)) / (to - from);
 }
 
+// s at a time, in the unit of the duration; a duration of 0 is a jump at time zero.
+inline double ramp_at(double time, double duration) {
+  if (time >= duration) return 1.0;
+  const double x = std::max(0.0, time / duration);
+  return x * x * (3.0 - 2.0 * x);
+}
+
 }  // namespace thalweg

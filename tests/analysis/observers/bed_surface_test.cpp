@@ -117,7 +117,7 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
   EXPECT_EQ(dry.diagnostics().size(), 2u);
 }
 
-// Half of gravity drives the flow in the middle of its ramp.
+// Half of gravity drives the flow in the middle of its ramp, and 3/16 - 2/64 of it after a quarter.
 TEST(BedSurface, DuringTheRampHasTheStressOfTheMoment) {
   Spheres spheres(world);
   BedFlow flow{0, 500.0, 80.0};
@@ -130,6 +130,7 @@ TEST(BedSurface, DuringTheRampHasTheStressOfTheMoment) {
   EXPECT_NEAR(full, 500.0 * 22.0 * d, 1e-10);
   flow.ramp = 2.0 * spheres.at(2, cubic_lattice(10)).time;
   EXPECT_NEAR(stress_at(2), 0.5 * full, 1e-10);
+  EXPECT_NEAR(stress_at(1), 5.0 / 32.0 * full, 1e-10);
   EXPECT_NEAR(stress_at(9), full, 1e-10);
 }
 
