@@ -120,6 +120,17 @@ void make_folder(const std::filesystem::path& path) {
   for (const auto& folder : changed) sync(folder);  // one that cannot be read cannot be waited for
 }
 
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> found;
+  std::filesystem::directory_iterator entry(folder, error);
+  if (error == std::errc::no_such_file_or_directory) return {};
+  for (const std::filesystem::directory_iterator end; !error && entry != end; entry.increment(error))
+    found.push_back(entry->path());
+  if (error) throw RunError(fmt::format("{}: cannot list the folder: {}.", folder.string(), error.message()));
+  return found;
+}
+
 std::string read_text(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace thalweg::io {
 
@@ -44,6 +45,10 @@ bool fill_with_zeros(const std::filesystem::path& path, std::uint64_t offset, st
 
 // Creates a folder and its parents if they are missing; their names outlast a loss of power. Throws RunError.
 void make_folder(const std::filesystem::path& path);
+
+// Paths of what a folder holds, in no order; none if there is no such folder. Throws RunError if it cannot be listed:
+// it may hold anything.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 // The whole file. Throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);

@@ -159,10 +159,9 @@ void RunFolder::keep_case(std::int64_t step) const {
 
 fs::path RunFolder::case_of(const fs::path& checkpoint) const {
   const std::optional<std::int64_t> step = step_of_checkpoint(checkpoint.filename().string());
-  std::error_code ignored;
   std::optional<std::int64_t> first;  // of the later steps until which a case was kept
-  for (const auto& entry : fs::directory_iterator(path_, ignored))
-    if (const auto until = step_between(entry.path().filename().string(), kept_case, ".yaml");
+  for (const fs::path& entry : entries_of(path_))
+    if (const auto until = step_between(entry.filename().string(), kept_case, ".yaml");
         step && until && *until >= *step && (!first || *until < *first))
       first = until;
   return first ? path_ / fmt::format("{}{}.yaml", kept_case, *first) : case_file();
@@ -172,9 +171,8 @@ fs::path RunFolder::checkpoint(std::int64_t step) const { return checkpoints() /
 
 std::vector<std::int64_t> RunFolder::steps_of_checkpoints() const {
   std::vector<std::int64_t> steps;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(checkpoints(), ignored))
-    if (const auto found = step_of_checkpoint(entry.path().filename().string())) steps.push_back(*found);
+  for (const fs::path& entry : entries_of(checkpoints()))
+    if (const auto found = step_of_checkpoint(entry.filename().string())) steps.push_back(*found);
   std::sort(steps.rbegin(), steps.rend());
   return steps;
 }
@@ -187,14 +185,14 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
   int kept = 0;
   for (const std::int64_t found : steps_of_checkpoints())
     if (found > step || kept++ >= std::max(keep, 1)) superfluous.push_back(checkpoint(found));
-  for (const auto& entry : fs::directory_iterator(checkpoints()))
-    if (is_left_by_a_kill(entry.path())) superfluous.push_back(entry.path());
-  for (const auto& entry : fs::directory_iterator(path_)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& entry : entries_of(checkpoints()))
+    if (is_left_by_a_kill(entry)) superfluous.push_back(entry);
+  for (const fs::path& entry : entries_of(path_)) {
+    const std::string name = entry.filename().string();
     const auto until = step_between(name, kept_case, ".yaml");
     const bool unfinished = is_left_by_a_kill(name) && (name.starts_with(profiles().filename().string()) ||
                                                         name.starts_with(bed().filename().string()));
-    if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry.path());
+    if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry);
   }
   for (const fs::path& file : superfluous) {
     std::error_code error;

@@ -34,10 +34,9 @@ std::optional<std::int64_t> step_of_part(const std::string& name) {
 fs::path last_part(const fs::path& folder, std::int64_t until) {
   std::int64_t last = -1;
   fs::path path;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (const auto step = step_of_part(entry.path().filename().string()); step && *step <= until && *step > last)
-      last = *step, path = entry.path();
+  for (const fs::path& entry : entries_of(folder))
+    if (const auto step = step_of_part(entry.filename().string()); step && *step <= until && *step > last)
+      last = *step, path = entry;
   return path;
 }
 
@@ -110,8 +109,7 @@ std::string mismatch(const fs::path& path, const Records& records) {
 void drop_parts_after(const fs::path& folder, std::int64_t step) {
   std::vector<fs::path> dropped;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const fs::path& path = entry.path();
+  for (const fs::path& path : entries_of(folder)) {
     const std::string name = path.filename().string();
     const auto part = step_of_part(name.substr(0, name.find(".partial")));
     if (part && (*part > step || is_left_by_a_kill(path))) dropped.push_back(path);

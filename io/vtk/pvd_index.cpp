@@ -96,8 +96,7 @@ void PvdIndex::take_up(double until) {
   }
   const fs::path name = path_.stem();
   std::vector<fs::path> later;
-  for (const auto& found : fs::directory_iterator(path_.parent_path() / name, ignored)) {
-    const fs::path& frame = found.path();
+  for (const fs::path& frame : entries_of(path_.parent_path() / name)) {
     if (!frame.filename().string().starts_with(name.string() + "_")) continue;
     const std::string file = (name / frame.filename()).generic_string();
     const auto known = listed.find(file);
@@ -157,9 +156,8 @@ void take_up_indices(MPI_Comm communicator, const fs::path& folder, double conti
   on_first_rank(communicator, [&] {
     std::vector<fs::path> found;
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".pvd" && fs::is_directory(folder / entry.path().stem(), ignored))
-        found.push_back(entry.path());
+    for (const fs::path& entry : entries_of(folder))
+      if (entry.extension() == ".pvd" && fs::is_directory(folder / entry.stem(), ignored)) found.push_back(entry);
     for (const fs::path& path : found) PvdIndex(MPI_COMM_SELF, path, continue_from);
   });
 }

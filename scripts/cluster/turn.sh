@@ -19,7 +19,7 @@ one_turn() {
   before=$(latest_checkpoint "$folder")
   [[ -z $seconds ]] || limit=(--walltime "$(clock_of "$seconds")")
 
-  "${launcher[@]}" "$thalweg" run "$case_file" "--out=$folder" --resume "${limit[@]}" &
+  "${launcher[@]}" "$thalweg" run "$case_file" "--out=$folder" --resume ${limit[@]+"${limit[@]}"} &
   job=$!
   trap 'signalled=1; kill -USR1 $job 2>/dev/null || true' USR1
   trap 'signalled=1; [[ -n $seconds ]] && ((SECONDS - began >= seconds)) || cancelled=1

@@ -1,4 +1,4 @@
-// Room on the disk for a file, while signals arrive.
+// Room on the disk for a file, while signals arrive; folders that cannot be listed.
 #include "io/files/atomic_file.hpp"
 #include "tests/io/scratch_folder.hpp"
 
@@ -33,6 +33,14 @@ TEST(AtomicFile, ASignalDoesNotMakeTheDiskFull) {
   EXPECT_EQ(interruptions, 0);
   EXPECT_EQ(std::filesystem::file_size(path), 5004u);
   EXPECT_TRUE(testing::contents(path).starts_with("kept"));
+}
+
+TEST(AtomicFile, AFolderThatCannotBeListedIsNotAnEmptyOne) {
+  const testing::ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  EXPECT_TRUE(entries_of(folder / "missing").empty());
+  testing::put(folder / "file", "no folder");
+  EXPECT_THROW(entries_of(folder / "file"), RunError);
 }
 
 }  // namespace
