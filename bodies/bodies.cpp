@@ -191,6 +191,15 @@ void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
 }
 
 template <typename Real>
+std::array<FixedVec3, 6> Bodies<Real>::occluded_wall_forces() const {
+  std::array<FixedVec3, 6> forces =
+      map_.occluded_patches().wall_forces(map_.solids(), surrounding_, reference_density());
+  const std::array<FixedVec3, 6> of_links = occluded_links_.wall_forces(bodies_);
+  for (std::size_t face = 0; face < forces.size(); ++face) forces[face] += of_links[face];
+  return forces;
+}
+
+template <typename Real>
 void Bodies<Real>::settle_at_start() {
   settle_cells();
   update_links();

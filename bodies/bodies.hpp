@@ -90,6 +90,8 @@ public:
   std::vector<std::array<std::int64_t, 3>> occluded_by_solids() const {
     return map_.occluded_patches().by_solids(bodies_.size(), solids());
   }
+  // Force on each face of the box under the patches of spheres that it occludes, this rank's share; of the last step.
+  std::array<FixedVec3, 6> occluded_wall_forces() const;
   const LinkTable& links() const { return links_; }
   const ExchangeTotals& step_totals() const { return totals_; }
 

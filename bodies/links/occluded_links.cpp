@@ -87,28 +87,45 @@ void OccludedLinks::find_at_cell(int slot, const Index3& local, const std::vecto
   }
 }
 
-void OccludedLinks::add(const Link& link, const Vec3& from, double distance, LinkBody& body,
-                        FixedTensor* moments) const {
-  const Vec3 c = velocity_of(link.direction), arm = from + distance * c;
-  const double weight = D3Q19::weight(link.direction), density = rest_.deviation(link.from + distance * c);
-  const Vec3 momentum = (2.0 * weight * density) * c;
-  body.force += FixedVec3::from(momentum);
-  body.torque += FixedVec3::from(arm.cross(momentum));
-  if (moments) moments->add(momentum, arm);
-}
-
 // If grains overlap, x_f can be inside this one too. A line may just miss the surface because the cells belong to a
 // slightly different position; its crossing is then the point nearest to the centre.
+OccludedLinks::Momentum OccludedLinks::momentum_of(const Link& link, const LinkBody& body) const {
+  const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, body.centre);
+  const Sphere sphere{body.radius};
+  double met = 0.0;
+  if (!sphere.holds(from)) met = sphere.crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
+  const Vec3 along = std::clamp(met, 0.0, 1.0) * c;
+  return {2.0 * D3Q19::weight(link.direction) * rest_.deviation(link.from + along) * c, from + along};
+}
+
 void OccludedLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   CHECK(links_.size() <= bodies.size() && (!moments || moments->size() == bodies.size()));
   for (std::size_t slot = 0; slot < links_.size(); ++slot)
     for (const Link& link : links_[slot]) {
-      const Vec3 c = velocity_of(link.direction), from = box_.difference(link.from, bodies[slot].centre);
-      const Sphere sphere{bodies[slot].radius};
-      double met = 0.0;
-      if (!sphere.holds(from)) met = sphere.crossing(from, c).value_or(-c.dot(from) / c.squaredNorm());
-      add(link, from, std::clamp(met, 0.0, 1.0), bodies[slot], moments ? &(*moments)[slot] : nullptr);
+      const Momentum momentum = momentum_of(link, bodies[slot]);
+      bodies[slot].force += FixedVec3::from(momentum.value);
+      bodies[slot].torque += FixedVec3::from(momentum.arm.cross(momentum.value));
+      if (moments) (*moments)[slot].add(momentum.value, momentum.arm);
     }
+}
+
+int OccludedLinks::face_before(const Link& link) const {
+  int face = -1;
+  for (int a = 0; a < 3; ++a) {
+    if (decomposition_.periodic()[a]) continue;
+    if (link.from[a] < 0.0) face = 2 * a;
+    if (link.from[a] > decomposition_.cells()[a]) face = 2 * a + 1;
+  }
+  return face;
+}
+
+std::array<FixedVec3, 6> OccludedLinks::wall_forces(const std::vector<LinkBody>& bodies) const {
+  std::array<FixedVec3, 6> forces{};
+  for (std::size_t slot = 0; slot < links_.size(); ++slot)
+    for (const Link& link : links_[slot])
+      if (const int face = face_before(link); face >= 0)
+        forces[static_cast<std::size_t>(face)] += FixedVec3::from(-momentum_of(link, bodies[slot]).value);
+  return forces;
 }
 
 }  // namespace thalweg::bodies

@@ -17,6 +17,7 @@
 #include "core/parallel/decomposition.hpp"
 #include "lbm/lattice/cell_map.hpp"
 
+#include <array>
 #include <vector>
 
 namespace thalweg::bodies {
@@ -33,6 +34,9 @@ public:
   // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
   void apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
+  // The opposite of the momentum of the hidden links that come from beyond a wall, by face (0 .. 5).
+  std::array<FixedVec3, 6> wall_forces(const std::vector<LinkBody>& bodies) const;
+
   std::size_t count() const;
 
 private:
@@ -45,8 +49,12 @@ private:
   void mark_around(const Index3& local);
   void rebuild(int slot, const std::vector<MappedBody>& grains);
   void find_at_cell(int slot, const Index3& local, const std::vector<MappedBody>& grains);
-  // from: x_f from the body's centre; moments: of the body, null: not measured.
-  void add(const Link& link, const Vec3& from, double distance, LinkBody& body, FixedTensor* moments) const;
+  // What a link gives to its body, and where, from the centre.
+  struct Momentum {
+    Vec3 value, arm;
+  };
+  Momentum momentum_of(const Link& link, const LinkBody& body) const;
+  int face_before(const Link& link) const;  // the wall that a link comes from; -1: it comes from another body
 
   const Decomposition& decomposition_;
   Block block_;

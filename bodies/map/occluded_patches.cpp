@@ -83,12 +83,16 @@ Vec3 OccludedPatches::direction(const Pair& pair, const std::vector<LinkBody>& b
 }
 
 // Rounds before it multiplies by the patch, so that the parts of a patch on several ranks add up to the whole.
+FixedVec3 OccludedPatches::force(const Patch& patch, double excess) {
+  const std::int64_t line = LatticeFixed::from(2.0 * excess / 36.0);
+  return {exact_product(line, patch.sum[0]), exact_product(line, patch.sum[1]), exact_product(line, patch.sum[2])};
+}
+
+// Rounds as force() does.
 void OccludedPatches::press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment) {
-  const double line = 2.0 * excess / 36.0;
-  const std::int64_t force = LatticeFixed::from(line);
-  body.force +=
-      {exact_product(force, patch.sum[0]), exact_product(force, patch.sum[1]), exact_product(force, patch.sum[2])};
+  body.force += force(patch, excess);
   if (!moment) return;
+  const double line = 2.0 * excess / 36.0;
   std::array<std::int64_t, 3> half;
   for (int b = 0; b < 3; ++b) half[b] = LatticeFixed::from(0.5 * line * arm[b]);
   for (std::size_t k = 0; k < 9; ++k)
@@ -144,6 +148,18 @@ void OccludedPatches::apply(const std::vector<MappedBody>& mapped, int solids, c
     const Vec3 arm = outward * (bodies[p].radius / std::max(outward.norm(), 1e-30));
     press(patch, arm, density - reference, bodies[p], moments && !is_solid ? &(*moments)[p] : nullptr);
   }
+}
+
+std::array<FixedVec3, 6> OccludedPatches::wall_forces(int solids, const std::vector<double>& surrounding,
+                                                      double reference) const {
+  std::array<FixedVec3, 6> forces{};
+  for (const auto& [key, patch] : patches_) {
+    const Pair pair = pair_of(key);
+    if (pair.p < solids || pair.q >= 0) continue;
+    const FixedVec3 of_grain = force(patch, surrounding[static_cast<std::size_t>(pair.p)] - reference);
+    forces[static_cast<std::size_t>(wall_of_face(0) - pair.q)] += {-of_grain.x, -of_grain.y, -of_grain.z};
+  }
+  return forces;
 }
 
 }  // namespace thalweg::bodies

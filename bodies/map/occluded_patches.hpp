@@ -45,6 +45,9 @@ public:
   void apply(const std::vector<MappedBody>& mapped, int solids, const std::vector<double>& surrounding,
              double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
+  // The opposite of what apply() adds to grains of this rank at walls, by face.
+  std::array<FixedVec3, 6> wall_forces(int solids, const std::vector<double>& surrounding, double reference) const;
+
   // A face of the box (0 .. 5) in the place of the other grain.
   static std::int32_t wall_of_face(int face) { return lbm::CellMap::fluid - 1 - face; }
 
@@ -68,7 +71,8 @@ private:
   static std::uint64_t key(std::int32_t p, std::int32_t q) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(p)) << 32 | static_cast<std::uint32_t>(q);
   }
-  static Vec3 to_vec3(const Patch& patch);  // h
+  static Vec3 to_vec3(const Patch& patch);                    // h
+  static FixedVec3 force(const Patch& patch, double excess);  // 2 D h; excess: D less the reference
   Vec3 direction(const Pair& pair, const std::vector<LinkBody>& bodies) const;
   // arm: from the centre of p to where the patch is; excess: D less the reference.
   static void press(const Patch& patch, const Vec3& arm, double excess, LinkBody& body, FixedTensor* moment);

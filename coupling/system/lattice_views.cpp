@@ -1,4 +1,5 @@
 // LatticeSystem as observers see it: snapshot, diagnostics and fields.
+#include "core/sums/wide_sums_over_ranks.hpp"
 #include "coupling/system/fluid_diagnostics.hpp"
 #include "coupling/system/fluid_mass.hpp"
 #include "coupling/system/fluid_sample.hpp"
@@ -99,10 +100,11 @@ template <typename Real>
 void LatticeSystem<Real>::add_wall_forces(std::vector<Diagnostic>& diagnostics) const {
   const std::vector<Vec3> of_grains = grains_->wall_forces();
   const std::array<Vec3, 6> of_fluid = fluid_.wall_forces(bodies_.reference_density());
+  const std::vector<Vec3> under_grains = vectors_over_ranks(communicator_, bodies_.occluded_wall_forces());
   std::size_t wall = 0;
   for (std::size_t face = 0; face < of_fluid.size(); ++face) {
     if (decomposition_->periodic()[face / 2]) continue;
-    const Vec3 fluid_force = of_fluid[face] * parameters_.units.force();
+    const Vec3 fluid_force = (of_fluid[face] + under_grains[face]) * parameters_.units.force();
     add_vector(fmt::format("wall_force_{}", dem::face_names[face]), "N", of_grains[wall], diagnostics);
     add_vector(fmt::format("fluid_wall_force_{}", dem::face_names[face]), "N", fluid_force, diagnostics);
     ++wall;

@@ -9,7 +9,7 @@ namespace thalweg::driver {
 double measure_bandwidth();
 
 // Bytes per second read and written by all ranks together updating arrays much larger than their caches in place.
-// Takes less than 0.1 s. Collective.
+// Takes about 0.1 s. Collective.
 double measure_bandwidth(MPI_Comm communicator);
 
 // Whether memory bounds the speed of a lattice of so many bytes on all ranks: the caches hold a smaller one.

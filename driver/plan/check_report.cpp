@@ -395,7 +395,7 @@ std::string check_json(const Case& c, double bandwidth) {
     add("bed_height", "m", numbers.bed_height);
     add("depth", "m", numbers.depth);
     add("slope", "1", numbers.slope);
-    add("shields_number", "1", numbers.shields_hydraulic);
+    add("shields_number", "1", expected_shields_number(c));
     add("galileo_number", "1", numbers.galileo);
   }
   all.set("name", c.name).set("system", name_of(c.system)).set("figures", figures).set("units", units);

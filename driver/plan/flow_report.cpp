@@ -66,18 +66,22 @@ void add_slope(const FlowNumbers& flow, Lines& lines) {
                               flow.particle_reynolds, flow.friction_velocity));
 }
 
-// Reports a flow driven by a mean velocity, a moving top or an inlet.
-void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
+// Shields number of a flow that a mean velocity, a moving top or an inlet drives; not a number for others.
+double shields_of_other_drive(const Case& c, const FlowEstimate& flow) {
   const ReferenceGrain grain = reference_grain(c);
   const double g = gravity_vector(c.gravity).norm(), excess = grain.density / c.fluid.density - 1.0;
   if (!(g > 0.0) || excess <= neutral_density || flow.drive == FlowCause::none || flow.drive == FlowCause::slope)
-    return;
-  const double stress = flow.friction_velocity * flow.friction_velocity;
+    return FlowNumbers::unknown;
+  return flow.friction_velocity * flow.friction_velocity / (excess * g * grain.diameter);
+}
+
+void add_other_drive(const Case& c, const FlowEstimate& flow, Lines& lines) {
+  const double shields = shields_of_other_drive(c, flow);
+  if (std::isnan(shields)) return;
   lines.push_back(fmt::format("Shields    about {:.4g} by {}, {} flow; the run measures it (analysis.bed_surface)",
-                              stress / (excess * g * grain.diameter), words_of(flow.drive),
-                              flow.laminar ? "laminar" : "turbulent"));
+                              shields, words_of(flow.drive), flow.laminar ? "laminar" : "turbulent"));
   lines.push_back(fmt::format("Reynolds   {:.4g} of a grain at the friction velocity {:.3g} m/s",
-                              flow.friction_velocity * grain.diameter / c.fluid.kinematic_viscosity,
+                              flow.friction_velocity * reference_grain(c).diameter / c.fluid.kinematic_viscosity,
                               flow.friction_velocity));
 }
 
@@ -178,6 +182,12 @@ Lines fluid_lines(const Case& c) {
   add_speed(c, flow, lines);
   add_times(c, flow, lines);
   return lines;
+}
+
+double expected_shields_number(const Case& c) {
+  const FlowNumbers numbers = flow_numbers(c);
+  if (std::isfinite(numbers.shields_hydraulic) || !std::isfinite(numbers.depth)) return numbers.shields_hydraulic;
+  return shields_of_other_drive(c, flow_estimate(c));
 }
 
 Lines bed_lines(const Case& c) {

@@ -192,16 +192,24 @@ Warnings angles_in_degrees(const Case& c) {
 
 Warnings friction_in_degrees(const Case& c) {
   Warnings found;
-  const auto look = [&](const char* key, double value, const Setter& set) {
-    if (value <= roughest_contact || value > steepest_friction) return;
-    const double tangent = std::tan(value * std::numbers::pi / 180.0);
-    found.push_back({fmt::format("contact.{} = {:g} looks like an angle in degrees, and the coefficient is its tangent",
-                                 key, value),
-                     {{{exact_change(fmt::format("contact.{}", key), tangent, 3, set)}, {}}}});
+  const auto look = [&](const std::string& key, const std::optional<double>& value, const Setter& set) {
+    if (!value || *value <= roughest_contact || *value > steepest_friction) return;
+    const double tangent = std::tan(*value * std::numbers::pi / 180.0);
+    found.push_back(
+        {fmt::format("{} = {:g} looks like an angle in degrees, and the coefficient is its tangent", key, *value),
+         {{{exact_change(key, tangent, 3, set)}, {}}}});
   };
   if (c.grains.empty()) return found;
-  look("friction", c.contact.friction, [](Case& other, double to) { other.contact.friction = to; });
-  look("wall_friction", c.contact.wall_friction, [](Case& other, double to) { other.contact.wall_friction = to; });
+  look("contact.friction", c.contact.friction, [](Case& other, double to) { other.contact.friction = to; });
+  look("contact.wall_friction", c.contact.wall_friction,
+       [](Case& other, double to) { other.contact.wall_friction = to; });
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (c.grains[n].contact)
+      look(fmt::format("grains.{}.contact.friction", n), c.grains[n].contact->friction,
+           [n](Case& other, double to) { other.grains[n].contact->friction = to; });
+  for (std::size_t n = 0; n < c.solids.size(); ++n)
+    look(fmt::format("solids.{}.friction", n), c.solids[n].friction,
+         [n](Case& other, double to) { other.solids[n].friction = to; });
   return found;
 }
 

@@ -204,6 +204,7 @@ VARIATIONS = [
     (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]), (WATER, [*CLEAR, "run.until=1"], ["too short"]),
     (DRY, ["gravity.slope=0.6"], ["slides as a whole"]),
     (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),  # tan(26 degrees)
+    (WATER, ["grains.0.contact={friction: 26}"], ["grains.0.contact.friction = 26", "grains.0.contact.friction: 0.488"]),
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["fluid.density=1"], ["looks like one of 1 g/cm^3", "fluid.density: 1000"]),
     (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which are 9.8", "gravity.magnitude: 9.8"]),

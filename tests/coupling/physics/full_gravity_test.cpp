@@ -43,6 +43,29 @@ TEST(FullGravity, LeavesAFluidAtRestAtRest) {
   EXPECT_LT(survey_of(system->fluid()).fastest.value, 1e-16);
 }
 
+// Grains that reach into the floor, where they hide a sixth of it, and one into the top: the fluid at rest presses on
+// floor, top and grains together with its weight.
+TEST(FullGravity, WallsUnderGrainsFeelThePressureOnThePatchesThatGrainsHide) {
+  WaterBox box = deep_box({24, 24, 22});
+  box.links.rule = bodies::LinkRule::cli;
+  box.wall_forces = true;
+  for (const Vec3& cells : {Vec3(6.1, 5.8, 4.7), Vec3(17.6, 6.3, 4.4), Vec3(6.4, 17.9, 4.9), Vec3(17.8, 18.2, 17.5)}) {
+    box.seeds.push_back(glass_sphere(static_cast<GlobalId>(box.seeds.size()), box.spacing * cells));
+    box.seeds.back().motion = dem::Motion::fixed;
+  }
+  const auto system = make(box);
+  for (int step = 0; step < 100; ++step) system->advance();
+  double force = 0.0;
+  const dem::GrainStore& store = system->grains().store();
+  for (std::size_t g = 0; g < store.owned; ++g) force += store.load_force[g].z();
+  force = sum_over_ranks(MPI_COMM_WORLD, force);
+  for (const Diagnostic& diagnostic : system->diagnostics())
+    if (diagnostic.name.starts_with("fluid_wall_force") && diagnostic.name.ends_with("_z")) force += diagnostic.value;
+  const double weight =
+      1000.0 * gravity * std::pow(box.spacing, 3) * static_cast<double>(survey_of(system->fluid()).totals.cells);
+  EXPECT_NEAR(force / -weight, 1.0, 1e-9);
+}
+
 struct Buoyancy {
   double smallest = 1e9, largest = -1e9, mean = 0.0;  // of the force along z over the weight of the displaced fluid
   double torque = 0.0, sideways = 0.0;                // largest, over weight (times radius)

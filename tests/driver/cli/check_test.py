@@ -3,6 +3,8 @@
 
 Called by ctest: check_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import json
+import re
 import sys
 from pathlib import Path
 
@@ -78,6 +80,15 @@ class Check(ProgramTest):
 
     def test_solve_prints_keys_and_json_figures_but_not_both(self):
         self.assert_refused("check", self.case, "--solve", "--json", words=["--solve excludes --json"])
+
+    def test_json_has_the_shields_number_of_the_lines(self):
+        case = Path(__file__).resolve().parents[3] / "cases/quickstart/case.yaml"
+        held = ("--set", "gravity.slope=0", "--set", "fluid.mean_velocity={velocity: 0.3, response_time: 0.1}")
+        for settings in ((), held):
+            (said,) = re.findall(r"^Shields .*?([0-9.e-]+) (?:from the hydraulic|by the mean)",
+                                 self.run_well("check", case, *settings).stdout, re.MULTILINE)
+            figures = json.loads(self.run_well("check", case, *settings, "--json").stdout)["figures"]
+            self.assertAlmostEqual(figures["shields_number"] / float(said), 1.0, 3)
 
     def test_rows_of_a_column_come_with_its_step(self):
         case = Path(__file__).resolve().parents[3] / "cases/continuum/case.yaml"
