@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace thalweg::driver::drag_accuracy_test {
 namespace {
 
@@ -42,6 +44,44 @@ TEST(DragText, IsOfTheThinnestSolidInClearWater) {
       << drag_text(c);
   c.gravity.slope = 0.0;
   EXPECT_EQ(drag_text(c), "");  // nothing flows past it
+}
+
+// The table of benchmarks/validation/simple_cubic_arrays, and second order beyond it.
+TEST(SlowDrag, IsThatOfTheValidation) {
+  EXPECT_NEAR(slow_drag_error(10.0, false).among_others, -0.044, 1e-12);
+  EXPECT_NEAR(slow_drag_error(7.1, false).alone, 0.5 * (-0.041 - 0.023), 1e-12);
+  EXPECT_NEAR(slow_drag_error(40.2, false).among_others, -0.009 / 4.0, 1e-12);
+  EXPECT_NEAR(slow_drag_error(5.0, true).alone, -0.017 * 1.44, 1e-12);
+}
+
+// The table of benchmarks/validation/sphere_drag_curve, and second order beyond its cells.
+TEST(StreamDrag, IsThatOfTheValidation) {
+  EXPECT_NEAR(stream_drag_error(10.0, 1000.0), 0.41, 1e-12);
+  EXPECT_NEAR(stream_drag_error(20.0, 300.0), 0.05, 1e-12);
+  EXPECT_NEAR(stream_drag_error(6.0, 9000.0), 1.29, 1e-12);
+  EXPECT_NEAR(stream_drag_error(40.0, 3000.0), 0.102 / 4.0, 1e-12);
+  EXPECT_NEAR(stream_drag_error(10.0, std::sqrt(1000.0 * 3000.0)), 0.5 * (0.41 + 0.58), 1e-12);
+  EXPECT_NEAR(stream_drag_error(std::sqrt(8.0 * 10.0), 300.0), 0.5 * (0.24 + 0.18), 1e-12);
+}
+
+TEST(DragText, DependsOnReynoldsNumberAndSubgridModel) {
+  Case c = wide_bed();
+  c.fluid.collision = lbm::CollisionModel::trt_at_bodies;
+  c.fluid.subgrid_model = lbm::SubgridModel::qr;
+  EXPECT_NE(drag_text(c).find("of a grain alone in a stream about 5"), std::string::npos)
+      << drag_text(c);  // 41 to 58 %
+  c.fluid.subgrid_model.reset();
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_NE(drag_text(c).find("28 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.smagorinsky_constant = 0.1;
+  EXPECT_NE(drag_text(c).find("14 % too slowly"), std::string::npos) << drag_text(c);
+  c.fluid.smagorinsky_constant.reset();
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
+  EXPECT_NE(drag_text(c).find("not validated"), std::string::npos) << drag_text(c);
+  c.fluid.kinematic_viscosity = 1e-3;  // Re 0.5
+  EXPECT_NE(drag_text(c).find("off by -1.6 % alone and -4.4 % among others"), std::string::npos) << drag_text(c);
+  c.grains.clear();
+  EXPECT_EQ(drag_text(c), "");
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "driver/estimate/flow_estimate.hpp"
 
-#include "driver/estimate/contact_estimate.hpp"
-#include "driver/estimate/drag_accuracy.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/water_over_glass.hpp"
@@ -25,12 +23,6 @@ Case film(double viscosity) {
   c.domain.size.z() = 0.02;
   c.fluid.kinematic_viscosity = viscosity;
   return c;
-}
-
-bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  for (const std::string& text : texts)
-    if (text.find(part) != std::string::npos) return true;
-  return false;
 }
 
 // Stokes' law; the sphere of benchmarks/validation/settle_in_water; ten Cate's E1 in an unbounded fluid (its README).
@@ -362,94 +354,6 @@ TEST(LogProfile, HasTheDischargeOfTheFlow) {
       const double bulk = flow_estimate(c).bulk_velocity;
       EXPECT_NEAR(mean, bulk, 0.01 * bulk) << viscosity;
     }
-}
-
-// benchmarks/validation/rebound_in_water: 2 % of a diameter for 555 N/m at 0.3 m/s, here at the speed of a fall.
-TEST(Overlaps, OfLinearAndOfElasticContacts) {
-  Case c = wide_bed();
-  c.contact.normal_stiffness = 555.0;
-  const Overlaps soft = expected_overlaps(c);
-  const double mass = 2550.0 * std::numbers::pi / 6.0 * d * d * d;
-  EXPECT_NEAR(soft.in_impact, 0.48 * std::sqrt(0.5 * mass / 555.0) / d, 2e-4 + 0.01 * soft.in_impact);
-  const double height = c.domain.size.z() - depth;
-  EXPECT_NEAR(soft.under_weight, 0.6 * 1550.0 * 9.8 * std::cos(std::atan(0.016)) * height * d / 555.0, 1e-9);
-  c.contact.normal_stiffness = 100.0;
-  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
-  c.contact.normal_stiffness = 20000.0;
-  EXPECT_FALSE(any_contains(warnings(c), "would overlap"));
-
-  // Hertz: the energy of the deepest overlap, 8/15 E* sqrt(R*) delta^(5/2), is that of the impact.
-  c.contact.law = dem::Law::hertz_mindlin;
-  c.contact.youngs_modulus = 1e7;
-  c.contact.poisson_ratio = 0.2;
-  const Overlaps elastic = expected_overlaps(c);
-  const double modulus = 1e7 / (2.0 * (1.0 - 0.04)), energy = 0.5 * 0.5 * mass * elastic.speed * elastic.speed;
-  EXPECT_NEAR(8.0 / 15.0 * modulus * std::sqrt(0.25 * d) * std::pow(elastic.in_impact * d, 2.5), energy, 1e-9 * energy);
-}
-
-// A grain that meets a wall has twice the effective mass of two grains: v sqrt(m/k) and, under the bed, p d^2/k.
-TEST(Overlaps, OfSofterWallsAreTheirs) {
-  Case c = wide_bed();
-  c.contact.normal_stiffness = 20000.0;
-  const Overlaps of_grains = expected_overlaps(c);
-  c.contact.walls.emplace();
-  c.contact.walls->normal_stiffness = 100.0;
-  const Overlaps with_walls = expected_overlaps(c);
-  EXPECT_NEAR(with_walls.in_impact, std::sqrt(2.0 * 200.0) * of_grains.in_impact, 1e-9 * with_walls.in_impact);
-  EXPECT_NEAR(with_walls.under_weight, 200.0 * of_grains.under_weight, 1e-9 * with_walls.under_weight);
-  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
-}
-
-// By the linear law those of the largest grains: under the pressure p of the bed p d/k of a diameter. A few fine grains
-// change nothing.
-TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
-  Case c = wide_bed();
-  c.contact.normal_stiffness = 555.0;
-  const Overlaps alike = expected_overlaps(c);
-  beds::Population& grains = c.grains[free_populations(c).front()];
-  grains.diameters.assign(static_cast<std::size_t>(grains.count), d);
-  grains.diameters.front() = 0.25 * d;
-  const Overlaps mixed = expected_overlaps(c);
-  EXPECT_NEAR(mixed.in_impact / mixed.speed, alike.in_impact / alike.speed, 0.01 * alike.in_impact / alike.speed);
-  EXPECT_NEAR(mixed.under_weight, alike.under_weight, 0.01 * alike.under_weight);
-}
-
-// The table of benchmarks/validation/simple_cubic_arrays, and second order beyond it.
-TEST(SlowDrag, IsThatOfTheValidation) {
-  EXPECT_NEAR(slow_drag_error(10.0, false).among_others, -0.044, 1e-12);
-  EXPECT_NEAR(slow_drag_error(7.1, false).alone, 0.5 * (-0.041 - 0.023), 1e-12);
-  EXPECT_NEAR(slow_drag_error(40.2, false).among_others, -0.009 / 4.0, 1e-12);
-  EXPECT_NEAR(slow_drag_error(5.0, true).alone, -0.017 * 1.44, 1e-12);
-}
-
-// The table of benchmarks/validation/sphere_drag_curve, and second order beyond its cells.
-TEST(StreamDrag, IsThatOfTheValidation) {
-  EXPECT_NEAR(stream_drag_error(10.0, 1000.0), 0.41, 1e-12);
-  EXPECT_NEAR(stream_drag_error(20.0, 300.0), 0.05, 1e-12);
-  EXPECT_NEAR(stream_drag_error(6.0, 9000.0), 1.29, 1e-12);
-  EXPECT_NEAR(stream_drag_error(40.0, 3000.0), 0.102 / 4.0, 1e-12);
-  EXPECT_NEAR(stream_drag_error(10.0, std::sqrt(1000.0 * 3000.0)), 0.5 * (0.41 + 0.58), 1e-12);
-  EXPECT_NEAR(stream_drag_error(std::sqrt(8.0 * 10.0), 300.0), 0.5 * (0.24 + 0.18), 1e-12);
-}
-
-TEST(DragText, DependsOnReynoldsNumberAndSubgridModel) {
-  Case c = wide_bed();
-  c.fluid.collision = lbm::CollisionModel::trt_at_bodies;
-  c.fluid.subgrid_model = lbm::SubgridModel::qr;
-  EXPECT_NE(drag_text(c).find("of a grain alone in a stream about 5"), std::string::npos)
-      << drag_text(c);  // 41 to 58 %
-  c.fluid.subgrid_model.reset();
-  c.fluid.smagorinsky_constant = 0.27;
-  EXPECT_NE(drag_text(c).find("28 % too slowly"), std::string::npos) << drag_text(c);
-  c.fluid.smagorinsky_constant = 0.1;
-  EXPECT_NE(drag_text(c).find("14 % too slowly"), std::string::npos) << drag_text(c);
-  c.fluid.smagorinsky_constant.reset();
-  c.fluid.subgrid_model = lbm::SubgridModel::none;
-  EXPECT_NE(drag_text(c).find("not validated"), std::string::npos) << drag_text(c);
-  c.fluid.kinematic_viscosity = 1e-3;  // Re 0.5
-  EXPECT_NE(drag_text(c).find("off by -1.6 % alone and -4.4 % among others"), std::string::npos) << drag_text(c);
-  c.grains.clear();
-  EXPECT_EQ(drag_text(c), "");
 }
 
 }  // namespace

@@ -20,11 +20,6 @@
 namespace thalweg::driver::check_report_test {
 namespace {
 
-bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  return std::any_of(texts.begin(), texts.end(),
-                     [&](const std::string& t) { return t.find(part) != std::string::npos; });
-}
-
 TEST(Cost, CountsCellsAndSteps) {
   const Case c = wide_bed();
   const Cost cost = cost_of(c, 10e9);

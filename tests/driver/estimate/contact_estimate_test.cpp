@@ -1,0 +1,69 @@
+#include "driver/estimate/contact_estimate.hpp"
+
+#include "driver/warnings/case_warnings.hpp"
+#include "tests/driver/water_over_glass.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace thalweg::driver::contact_estimate_test {
+namespace {
+
+constexpr double d = 5e-3, depth = 0.0412;
+
+Case bed() { return water_over_glass(d, 0.016, depth, 0.040, lbm::FaceType::periodic); }
+
+// benchmarks/validation/rebound_in_water: 2 % of a diameter for 555 N/m at 0.3 m/s, here at the speed of a fall.
+TEST(Overlaps, OfLinearAndOfElasticContacts) {
+  Case c = bed();
+  c.contact.normal_stiffness = 555.0;
+  const Overlaps soft = expected_overlaps(c);
+  const double mass = 2550.0 * std::numbers::pi / 6.0 * d * d * d;
+  EXPECT_NEAR(soft.in_impact, 0.48 * std::sqrt(0.5 * mass / 555.0) / d, 2e-4 + 0.01 * soft.in_impact);
+  const double height = c.domain.size.z() - depth;
+  EXPECT_NEAR(soft.under_weight, 0.6 * 1550.0 * 9.8 * std::cos(std::atan(0.016)) * height * d / 555.0, 1e-9);
+  c.contact.normal_stiffness = 100.0;
+  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
+  c.contact.normal_stiffness = 20000.0;
+  EXPECT_FALSE(any_contains(warnings(c), "would overlap"));
+
+  // Hertz: the energy of the deepest overlap, 8/15 E* sqrt(R*) delta^(5/2), is that of the impact.
+  c.contact.law = dem::Law::hertz_mindlin;
+  c.contact.youngs_modulus = 1e7;
+  c.contact.poisson_ratio = 0.2;
+  const Overlaps elastic = expected_overlaps(c);
+  const double modulus = 1e7 / (2.0 * (1.0 - 0.04)), energy = 0.5 * 0.5 * mass * elastic.speed * elastic.speed;
+  EXPECT_NEAR(8.0 / 15.0 * modulus * std::sqrt(0.25 * d) * std::pow(elastic.in_impact * d, 2.5), energy, 1e-9 * energy);
+}
+
+// A grain that meets a wall has twice the effective mass of two grains: v sqrt(m/k) and, under the bed, p d^2/k.
+TEST(Overlaps, OfSofterWallsAreTheirs) {
+  Case c = bed();
+  c.contact.normal_stiffness = 20000.0;
+  const Overlaps of_grains = expected_overlaps(c);
+  c.contact.walls.emplace();
+  c.contact.walls->normal_stiffness = 100.0;
+  const Overlaps with_walls = expected_overlaps(c);
+  EXPECT_NEAR(with_walls.in_impact, std::sqrt(2.0 * 200.0) * of_grains.in_impact, 1e-9 * with_walls.in_impact);
+  EXPECT_NEAR(with_walls.under_weight, 200.0 * of_grains.under_weight, 1e-9 * with_walls.under_weight);
+  EXPECT_TRUE(any_contains(warnings(c), "would overlap"));
+}
+
+// By the linear law those of the largest grains: under the pressure p of the bed p d/k of a diameter. A few fine grains
+// change nothing.
+TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
+  Case c = bed();
+  c.contact.normal_stiffness = 555.0;
+  const Overlaps alike = expected_overlaps(c);
+  beds::Population& grains = c.grains[free_populations(c).front()];
+  grains.diameters.assign(static_cast<std::size_t>(grains.count), d);
+  grains.diameters.front() = 0.25 * d;
+  const Overlaps mixed = expected_overlaps(c);
+  EXPECT_NEAR(mixed.in_impact / mixed.speed, alike.in_impact / alike.speed, 0.01 * alike.in_impact / alike.speed);
+  EXPECT_NEAR(mixed.under_weight, alike.under_weight, 0.01 * alike.under_weight);
+}
+
+}  // namespace
+}  // namespace thalweg::driver::contact_estimate_test
