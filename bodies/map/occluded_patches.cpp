@@ -9,6 +9,13 @@ namespace thalweg::bodies {
 using lbm::CellMap;
 using lbm::D3Q19;
 
+namespace {
+
+// The reverse of wall_of_face().
+int face_of_wall(std::int32_t wall) { return OccludedPatches::wall_of_face(0) - wall; }
+
+}  // namespace
+
 OccludedPatches::OccludedPatches(const Decomposition& decomposition, const Block& block, const CellMap& cells)
     : box_(decomposition.cell_box()), cells_(cells) {
   for (int a = 0; a < 3; ++a) {
@@ -76,7 +83,7 @@ Vec3 OccludedPatches::direction(const Pair& pair, const std::vector<LinkBody>& b
   if (pair.q >= 0)
     return box_.difference(bodies[static_cast<std::size_t>(pair.q)].centre,
                            bodies[static_cast<std::size_t>(pair.p)].centre);
-  const int face = wall_of_face(0) - pair.q;
+  const int face = face_of_wall(pair.q);
   Vec3 outward = Vec3::Zero();
   outward[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
   return outward;
@@ -157,7 +164,7 @@ std::array<FixedVec3, 6> OccludedPatches::wall_forces(int solids, const std::vec
     const Pair pair = pair_of(key);
     if (pair.p < solids || pair.q >= 0) continue;
     const FixedVec3 of_grain = force(patch, surrounding[static_cast<std::size_t>(pair.p)] - reference);
-    forces[static_cast<std::size_t>(wall_of_face(0) - pair.q)] += {-of_grain.x, -of_grain.y, -of_grain.z};
+    forces[static_cast<std::size_t>(face_of_wall(pair.q))] += {-of_grain.x, -of_grain.y, -of_grain.z};
   }
   return forces;
 }
