@@ -2,10 +2,11 @@
 // position, velocity, angular_velocity, contact_force, contact_torque, load_force, load_torque, attached. One row a
 // contact, sorted by ids: contact_ids (lower id; higher id, or what solid_key() says of walls and solids), and what its
 // law keeps, by the names that the law gives to the parts: contact_spring or contact_mindlin_spring; with rolling
-// friction contact_rolling; and so on. Where there are clumps also, of each grain, clump (its clump's id, or -1) and
-// offset, and one row a clump, sorted by id: clump_id, clump_members, clump_motion, clump_mass and so on with the names
-// of struct ClumpRow. Where ids have gaps, because grains have left or come in, also the column id; and what supplies
-// and sinks have brought and taken, in attributes, and the bodies that return, as such rows below "returning".
+// friction contact_rolling or contact_mindlin_rolling; and so on. Where there are clumps also, of each grain, clump
+// (its clump's id, or -1) and offset, and one row a clump, sorted by id: clump_id, clump_members, clump_motion,
+// clump_mass and so on with the names of struct ClumpRow. Where ids have gaps, because grains have left or come in,
+// also the column id; and what supplies and sinks have brought and taken, in attributes, and the bodies that return, as
+// such rows below "returning".
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/row_range.hpp"

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <tuple>
 
 namespace thalweg::dem {
@@ -44,6 +45,12 @@ inline RollingMoment rolling_moment(const ContactMotion& c, double normal, const
   return {f.x, f.y, f.z, f.spring};
 }
 
+// Name of the rolling spring beside the law's own. That of elastic spheres is an angle times the contact radius, which
+// the linear law cannot take over, nor the other way round.
+constexpr const char* rolling_part_beside(const HistoryPart& spring) {
+  return std::string_view(spring.name) == "spring" ? "rolling" : "mindlin_rolling";
+}
+
 // Another law with rolling friction.
 template <typename Inner>
 class WithRollingFriction {
@@ -55,7 +62,8 @@ public:
   };
   static constexpr std::size_t of_inner = std::tuple_size_v<typename Inner::History>;
   using History = std::array<double, of_inner + 3>;  // after the law's: theta, rad; of elastic spheres a theta, m rad
-  static constexpr std::array history_parts = joined(Inner::history_parts, HistoryPart{"rolling", 3});
+  static constexpr std::array history_parts =
+      joined(Inner::history_parts, HistoryPart{rolling_part_beside(Inner::history_parts.front()), 3});
   static constexpr bool rolls = true;
 
   WithRollingFriction(const Inner& inner, const ContactParameters& common)

@@ -43,9 +43,11 @@ std::vector<beds::SizeCount> represented_sizes(const Case& c) {
 
 std::string reference_text(const Case& c) {
   const ReferenceGrain grain = reference_grain(c);
-  return fmt::format(
-      "diameter {:.6g} m, density {:.6g} kg/m^3 ({})", grain.diameter, grain.density,
-      c.analysis.reference_diameter ? "analysis.reference_diameter" : "volume median of all free grains");
+  const bool all_held = c.grains[free_populations(c).front()].held();
+  return fmt::format("diameter {:.6g} m, density {:.6g} kg/m^3 ({})", grain.diameter, grain.density,
+                     c.analysis.reference_diameter ? "analysis.reference_diameter"
+                     : all_held                    ? "volume median of all grains"
+                                                   : "volume median of all free grains");
 }
 
 }  // namespace thalweg::driver

@@ -7,10 +7,9 @@
 #include "driver/input/run_context.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
 #include "io/hdf5/profile_file.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -38,8 +37,7 @@ static void remove_if_later(const std::filesystem::path& file, const std::string
     if (io::Hdf5Reader(file).real_attribute(attribute) <= time) return;
   } catch (const InputError&) {  // whatever is in it, it is not of this state
   }
-  if (!std::filesystem::remove(file, error) && error)
-    throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
+  io::remove_entry(file);
 }
 
 RunOutput::RunOutput(MPI_Comm communicator, const Case& c, const io::RunFolder& folder, const System& system,

@@ -29,6 +29,12 @@ Warnings frequent_output(const Case& c) {
   look("series.every", c.output.series.every, [](Case& other, double to) { other.output.series.every = to; });
   look("fluid.every", c.output.fluid.every, [](Case& other, double to) { other.output.fluid.every = to; });
   look("grains.every", c.output.grains.every, [](Case& other, double to) { other.output.grains.every = to; });
+  for (std::size_t n = 0; n < c.output.fluid_parts.size(); ++n)
+    look(fmt::format("fluid_parts.{}.every", n), c.output.fluid_parts[n].every,
+         [n](Case& other, double to) { other.output.fluid_parts[n].every = to; });
+  for (std::size_t n = 0; n < c.output.grain_parts.size(); ++n)
+    look(fmt::format("grain_parts.{}.every", n), c.output.grain_parts[n].every,
+         [n](Case& other, double to) { other.output.grain_parts[n].every = to; });
   look("checkpoint.every", c.output.checkpoint.every,
        [](Case& other, double to) { other.output.checkpoint.every = to; });
   return found;

@@ -131,6 +131,12 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
   return found;
 }
 
+void remove_entry(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  if (error) throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
+}
+
 std::string read_text(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))

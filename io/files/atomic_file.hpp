@@ -50,6 +50,9 @@ void make_folder(const std::filesystem::path& path);
 // it may hold anything.
 std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
+// Removes a file, or a folder with all that it holds, if it is there. Throws RunError if it stays.
+void remove_entry(const std::filesystem::path& path);
+
 // The whole file. Throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 

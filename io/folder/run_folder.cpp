@@ -111,16 +111,12 @@ void RunFolder::create(bool overwrite) const {
   check_new(overwrite);
   make_folder(path_);
   std::vector<fs::path> old;
-  for (const auto& entry : fs::directory_iterator(path_))
-    if (entry.path().filename().string().starts_with(kept_case)) old.push_back(entry.path());
+  for (const fs::path& entry : entries_of(path_))
+    if (entry.filename().string().starts_with(kept_case)) old.push_back(entry);
   // case.yaml, by which the folder is known, goes last, and what would show that there have been checkpoints before
   // them: an interrupted removal can be taken up again.
   for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
-  for (const fs::path& path : old) {
-    std::error_code error;
-    fs::remove_all(path, error);
-    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
-  }
+  for (const fs::path& path : old) remove_entry(path);
 }
 
 void RunFolder::write_case(const std::string& comment_lines, const std::string& yaml) const {
@@ -194,11 +190,7 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
                                                         name.starts_with(bed().filename().string()));
     if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry);
   }
-  for (const fs::path& file : superfluous) {
-    std::error_code error;
-    fs::remove(file, error);
-    if (error) throw RunError(fmt::format("{}: cannot remove: {}.", file.string(), error.message()));
-  }
+  for (const fs::path& file : superfluous) remove_entry(file);
 }
 
 bool RunFolder::has_had_checkpoint() const {

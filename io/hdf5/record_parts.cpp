@@ -108,15 +108,12 @@ std::string mismatch(const fs::path& path, const Records& records) {
 
 void drop_parts_after(const fs::path& folder, std::int64_t step) {
   std::vector<fs::path> dropped;
-  std::error_code error;
   for (const fs::path& path : entries_of(folder)) {
     const std::string name = path.filename().string();
     const auto part = step_of_part(name.substr(0, name.find(".partial")));
     if (part && (*part > step || is_left_by_a_kill(path))) dropped.push_back(path);
   }
-  for (const fs::path& path : dropped)
-    if (!fs::remove(path, error) && error)
-      throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
+  for (const fs::path& path : dropped) remove_entry(path);
 }
 
 RecordParts::RecordParts(MPI_Comm communicator, fs::path folder, std::optional<std::int64_t> continue_from)

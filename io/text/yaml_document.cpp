@@ -247,6 +247,9 @@ void YamlDocument::apply(const std::string& override_text) {
       if (!next)
         throw InputError(fmt::format("{}: {} is a list of {} and has no entry \"{}\"; count from 0.", place, done,
                                      node->items.size(), key));
+      if (remove && last)
+        throw InputError(fmt::format(
+            "{}: an entry of a list cannot be taken out; set all of {}, or take all of it out.", place, done));
     } else {
       next = entry_of(*node, key);
       if (remove && last) erase_entry(*node, key);

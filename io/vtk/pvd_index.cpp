@@ -60,12 +60,6 @@ std::vector<PvdIndex::Entry> entries_in(std::string_view text) {
   return entries;
 }
 
-void remove(const fs::path& path) {
-  std::error_code error;
-  if (!fs::remove(path, error) && error)
-    throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
-}
-
 // Writes text into an existing file of `size` bytes from `offset` on. False if the file is not there, has another size
 // or cannot be written; it may then end in the midst of the text.
 bool write_at(const fs::path& path, std::uint64_t size, std::uint64_t offset, std::string_view text) {
@@ -108,7 +102,7 @@ void PvdIndex::take_up(double until) {
   }
   std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.time < b.time; });
   if (is_there || !entries_.empty()) rewrite();
-  std::for_each(later.begin(), later.end(), remove);
+  std::for_each(later.begin(), later.end(), remove_entry);
 }
 
 void PvdIndex::add(double time, const fs::path& file) {

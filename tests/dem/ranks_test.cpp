@@ -255,13 +255,14 @@ int bridges_across_borders(const Case& c, const thalweg::test::MemoryArchive& ar
 }
 
 // Layouts matter to what crosses borders, not to the law of a contact: cases that add only a law take two. Four ranks
-// try all; eight, which wait for one another most of the time, both kinds of slabs and the blocks.
+// try all; eight, which wait for one another most of the time, both kinds of slabs and the blocks, or only the blocks.
 enum class Layouts { all, two };
 
 std::vector<Index3> layouts(const Case& c, int ranks, Layouts wanted) {
   const std::vector<Index3> possible = layouts(c.cells, ranks);
   if (possible.size() <= 2 || (wanted == Layouts::all && ranks <= 4)) return possible;
   const Index3 blocks = Decomposition::best_layout(c.cells, ranks);
+  if (wanted == Layouts::two && ranks > 4) return {blocks};
   if (wanted == Layouts::two) return {possible.front(), blocks};
   return {possible.front(), blocks, possible.back()};
 }

@@ -147,9 +147,11 @@ TEST(ObliqueImpact, AngularMomentumIsConserved) {
   EXPECT_NEAR((angular_momentum() - start).norm() / start.norm(), 0.0, 1e-11);  // round-off of 10^4 steps
 }
 
-// Springs of the linear law are lengths, those of Hertz and Mindlin areas: one law does not take over the other's.
+// Springs of the linear law are lengths and angles, those of Hertz and Mindlin areas and angles times a length: one law
+// does not take over the other's.
 TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   GrainParameters p = parameters_of(test::glass(0.9));
+  p.walls[0].rolling_friction = 0.1;
   GrainDynamics linear(
       test::cube(), MPI_COMM_SELF, p,
       {test::glass_sphere(0, Vec3(0.025, 0.025, test::glass_radius + 1e-9), Vec3(1e-4, 0.0, -normal_speed))});
@@ -163,6 +165,7 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   };
   const thalweg::test::MemoryArchive archive = saved(linear);
   EXPECT_GT(largest(archive, "grains/contact_spring"), 0.0);
+  EXPECT_GT(largest(archive, "grains/contact_rolling"), 0.0);
   const auto restarted = [&archive](const GrainParameters& with) {
     auto grains = std::make_unique<GrainDynamics>(test::cube(), MPI_COMM_SELF, with, GrainSeeds{});
     thalweg::test::load(*grains, archive);
@@ -172,7 +175,8 @@ TEST(ObliqueImpact, SpringsOfAnotherLawAreNotGoneOnWith) {
   p.contact.law = Law::hertz_mindlin;
   p.contact.youngs_modulus = 1e7;
   p.contact.poisson_ratio = 0.3;
-  EXPECT_LE(largest(saved(*restarted(p)), "grains/contact_mindlin_spring"), 0.0);  // rows of zeros are not saved
+  for (const char* spring : {"grains/contact_mindlin_spring", "grains/contact_mindlin_rolling"})
+    EXPECT_LE(largest(saved(*restarted(p)), spring), 0.0) << spring;  // rows of zeros are not saved
 }
 
 }  // namespace

@@ -84,6 +84,11 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   EXPECT_NEAR(disk_space(every_step).fluid, (1.5e6 + 1.0) * 240.0 * 212.0 * 5.0 * 4.0, 1e6);
   EXPECT_TRUE(any_contains(warnings(every_step), "output.fluid.every = 1e-09 s is less than a step"));
   EXPECT_FALSE(any_contains(warnings(c), "less than a step"));
+  Case of_parts = c;
+  of_parts.output.grain_parts.emplace_back().every = 1e-9;
+  of_parts.output.fluid_parts.emplace_back().every = 1e-9;
+  EXPECT_TRUE(any_contains(warnings(of_parts), "output.grain_parts.0.every = 1e-09 s is less than a step"));
+  EXPECT_TRUE(any_contains(warnings(of_parts), "output.fluid_parts.0.every = 1e-09 s is less than a step"));
   c.output.checkpoint.every = 0.0;
   EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints / 3.0, 1.0);
 }

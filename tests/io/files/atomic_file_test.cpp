@@ -43,5 +43,18 @@ TEST(AtomicFile, AFolderThatCannotBeListedIsNotAnEmptyOne) {
   EXPECT_THROW(entries_of(folder / "file"), RunError);
 }
 
+TEST(AtomicFile, WhatIsRemovedIsGoneOrTheReasonIsSaid) {
+  const testing::ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  testing::put(folder / "file", "a");
+  make_folder(folder / "parts");
+  testing::put(folder / "parts" / "one", "b");
+  for (const char* name : {"file", "parts", "missing"}) {
+    remove_entry(folder / name);
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
+  EXPECT_THROW(remove_entry("/proc/self/status"), RunError);
+}
+
 }  // namespace
 }  // namespace thalweg::io::atomic_file_test
