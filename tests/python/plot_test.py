@@ -1,6 +1,7 @@
 """thalweg plot all draws a run folder, and says in one sentence what is wrong with one it cannot draw."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -306,6 +307,17 @@ class Plot(unittest.TestCase):
         self.assertIn("left out", done.stderr)
         self.assertIn("no picture of the grains", done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_the_page_has_a_row_of_every_kind(self):
+        helped = subprocess.run(
+            [sys.executable, "-B", "-m", "thalweg", "plot", "--help"], text=True, capture_output=True,
+            env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "COLUMNS": "100"},
+        )
+        kinds = re.findall(r"^    (\w+)", helped.stdout, re.MULTILINE)
+        self.assertGreater(len(kinds), 10)
+        rows = re.findall(r"^\| (`.*?) \|", (ROOT / "python/README.md").read_text(), re.MULTILINE)
+        for kind in set(kinds) - {"KIND"}:
+            self.assertTrue(any(f"`{kind}`" in row for row in rows), kind)
 
     def test_a_folder_that_is_no_run(self):
         (self.folder / "case.yaml").unlink()
