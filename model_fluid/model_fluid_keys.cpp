@@ -120,6 +120,11 @@ void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks) {
       {.meaning = "of all numbers of the case"});
 }
 
+std::optional<std::string> units_text(const ModelFluidKeys& fluid) {
+  if (fluid.units == ModelUnits::si) return std::nullopt;
+  return "grain units: m stands for the mean diameter D, s for sqrt(D/g'), kg for the mean mass";
+}
+
 GrainScales scales_of(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity) {
   return {mean.diameter, mean.mass, gravity * (1.0 - fluid.fluid_density * mean.volume / mean.mass)};
 }

@@ -5,6 +5,7 @@
 #include "model_fluid/model_fluid_field.hpp"
 
 #include <optional>
+#include <string>
 
 namespace thalweg::model_fluid {
 
@@ -58,6 +59,9 @@ struct MeanGrain {
 
 // Throws KeyError where units and grains do not fit together. gravity: m/s^2, downwards, without buoyancy.
 void check(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity);
+
+// What m, s and kg of a case in grain units stand for; none in SI units.
+std::optional<std::string> units_text(const ModelFluidKeys& fluid);
 
 GrainScales scales_of(const ModelFluidKeys& fluid, const MeanGrain& mean, double gravity);
 

@@ -40,6 +40,7 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
     log.line(fmt::format("to stop early: thalweg stop {} (after Ctrl-C or SIGTERM mpirun allows only {:.2g} s to save)",
                          shell_word(folder.path().string()), 2.0 * delay));
   if (!c.grains.empty()) log.line("reference grain: " + reference_text(c));
+  if (const auto units = units_text(c.model_fluid); units && c.system == SystemKind::model_fluid) log.line(*units);
   if (bandwidth > 0.0) {
     const double bytes = bytes_per_cell_update(bytes_per_value(c));
     identity.memory_bound_mlups = bandwidth / bytes * 1e-6;

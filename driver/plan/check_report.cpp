@@ -225,6 +225,7 @@ void add_model_fluid(const Case& c, Lines& lines) {
                               k.velocity, k.viscous, k.inertial));
   lines.push_back(fmt::format("           mean grain {:.4g} m, {:.4g} kg; reduced gravity {:.4g} m/s^2; time {:.4g} s",
                               s.diameter, s.mass, s.gravity, std::sqrt(s.diameter / s.gravity)));
+  if (const auto units = units_text(c.model_fluid)) lines.push_back("           " + *units);
 }
 
 // Cells to a diameter of a column: 10 took 40 steps for 5 s, 16 took 574 and 20 took 6350.

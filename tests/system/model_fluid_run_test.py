@@ -114,6 +114,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         (self.folder / "si.yaml").write_text(in_si)
         self.run_well("run", self.case, "--out", "grain")
         self.run_well("run", self.folder / "si.yaml", "--out", "si")
+        for name, there in (("grain", True), ("si", False)):
+            self.assertEqual("grain units: m stands for" in (self.folder / name / "run.log").read_text(), there)
         grain, si = self.bed("grain"), self.bed("si")
         self.assertGreater(abs(grain["velocity"]).max(), 1.0)
         # They differ by rounding, which collisions enlarge.
@@ -199,6 +201,7 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         said = self.run_well("check", self.case).stdout
         self.assertIn("Shields number 0.5; Re_* 100 as printed, u_* D/nu 600", said)
         self.assertIn("mean grain 1 m, 1 kg; reduced gravity 1 m/s^2", said)
+        self.assertIn("grain units: m stands for the mean diameter D", said)
 
     def test_refusals(self):
         for settings, words in (
