@@ -54,8 +54,8 @@ std::vector<PlaneMomentum> planes_of(const lbm::Fluid<Real>& fluid, const Units&
   const Index3& from = fluid.block().lower;
   const int planes = fluid.decomposition().cells()[2];
   std::vector<WideSum> sums(static_cast<std::size_t>(planes * columns));
-  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t cell, const Index3& at) {
-    add_cell(lbm::momentum_flux(fluid, cell), &sums[(from[2] + at[2]) * columns]);
+  lbm::for_each_fluid_cell(fluid.cells(), [&](std::ptrdiff_t, const Index3& at) {
+    add_cell(lbm::momentum_flux(fluid, at), &sums[(from[2] + at[2]) * columns]);
   });
   sum_over_ranks(fluid.communicator(), sums);
   std::vector<PlaneMomentum> all;

@@ -77,20 +77,41 @@ double q_criterion(const Gradient& g) {
 
 namespace {
 
-// Uses the populations that enter the coming collision.
-template <typename Real>
-CellMoments<double> incoming_moments(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+// The populations that enter the coming collision, and their moments.
+struct Incoming {
   double f[D3Q19::directions];
-  for (int i = 0; i < D3Q19::directions; ++i) f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
+  CellMoments<double> moments;
+};
+
+template <typename Real>
+Incoming incoming_of(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+  Incoming in;
+  for (int i = 0; i < D3Q19::directions; ++i) in.f[i] = static_cast<double>(fluid.populations().incoming(i, cell));
   const CollisionConstants<double> constants(fluid.parameters());
   const bool bulk = fluid.parameters().with_bulk();
-  return with_constant(fluid.parameters().subgrid.model(), [&]<SubgridModel subgrid>() {
-    return bulk ? moments_of<subgrid, true>(f, constants) : moments_of<subgrid, false>(f, constants);
+  in.moments = with_constant(fluid.parameters().subgrid.model(), [&]<SubgridModel subgrid>() {
+    return bulk ? moments_of<subgrid, true>(in.f, constants) : moments_of<subgrid, false>(in.f, constants);
   });
+  return in;
+}
+
+// The part 1 - a of the trace that relaxes with the bulk relaxation time.
+template <typename Real>
+double bulk_share(const Fluid<Real>& fluid, const Index3& cell, const Incoming& in) {
+  const CollisionParameters& p = fluid.parameters();
+  if (p.model != CollisionModel::trt_at_bodies || !fluid.cells().is_beside_bodies(cell)) return 1.0;
+  const double in_gap = fluid.cells().is_in_gap(cell) ? 1.0 : 0.0;
+  return 1.0 - calmness_of(in.f, in.moments, CollisionConstants<double>(p), in_gap);
 }
 
 Symmetric<double> times(double factor, const Symmetric<double>& s) {
   return {factor * s.xx, factor * s.yy, factor * s.zz, factor * s.xy, factor * s.xz, factor * s.yz};
+}
+
+void add_isotropic(double part, Symmetric<double>& s) {
+  s.xx += part;
+  s.yy += part;
+  s.zz += part;
 }
 
 }  // namespace
@@ -98,7 +119,7 @@ Symmetric<double> times(double factor, const Symmetric<double>& s) {
 template <typename Real>
 SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
   const CollisionParameters& parameters = fluid.parameters();
-  const CellMoments<double> m = incoming_moments(fluid, cell);
+  const CellMoments<double> m = incoming_of(fluid, cell).moments;
   const double squared = (parameters.with_bulk() ? m.pi.traceless() : m.pi).squared();
   SubgridState state;
   state.shear_rate = 1.5 * std::sqrt(2.0 * squared) * m.omega * m.inverse_rho;
@@ -107,20 +128,22 @@ SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
 }
 
 template <typename Real>
-MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell) {
+MomentumFlux momentum_flux(const Fluid<Real>& fluid, const Index3& cell) {
   const CollisionParameters& p = fluid.parameters();
-  const CellMoments<double> m = incoming_moments(fluid, cell);
+  const Incoming in = incoming_of(fluid, fluid.indexing().index(cell[0], cell[1], cell[2]));
+  const CellMoments<double>& m = in.moments;
   MomentumFlux flux;
   flux.density = 1.0 + m.deviation;
   flux.velocity = m.inverse_rho * (Vec3(m.mx, m.my, m.mz) + 0.5 * p.force);
   const Symmetric<double> pi = p.with_bulk() ? m.pi.traceless() : m.pi;
-  flux.viscous = times(-m.omega * (p.relaxation_time - 0.5), pi);
-  flux.subgrid = times(-(1.0 - m.omega * p.relaxation_time), pi);
+  const double of_viscosity = -m.omega * (p.relaxation_time - 0.5), of_subgrid = -(1.0 - m.omega * p.relaxation_time);
+  flux.viscous = times(of_viscosity, pi);
+  flux.subgrid = times(of_subgrid, pi);
   if (p.with_bulk()) {
-    const double bulk = -(1.0 - 0.5 / p.bulk_relaxation_time) * m.pi.trace() / 3.0;
-    flux.viscous.xx += bulk;
-    flux.viscous.yy += bulk;
-    flux.viscous.zz += bulk;
+    const double share = bulk_share(fluid, cell, in), trace = m.pi.trace();
+    const double bulk = -(1.0 - 0.5 / p.bulk_relaxation_time) * trace / 3.0, others = (1.0 - share) * trace / 3.0;
+    add_isotropic(share * bulk + of_viscosity * others, flux.viscous);
+    add_isotropic(of_subgrid * others, flux.subgrid);
   }
   return flux;
 }
@@ -129,7 +152,7 @@ template GhostedField velocity_field(const Fluid<float>&, const Block&);
 template GhostedField velocity_field(const Fluid<double>&, const Block&);
 template SubgridState subgrid_state(const Fluid<float>&, std::ptrdiff_t);
 template SubgridState subgrid_state(const Fluid<double>&, std::ptrdiff_t);
-template MomentumFlux momentum_flux(const Fluid<float>&, std::ptrdiff_t);
-template MomentumFlux momentum_flux(const Fluid<double>&, std::ptrdiff_t);
+template MomentumFlux momentum_flux(const Fluid<float>&, const Index3&);
+template MomentumFlux momentum_flux(const Fluid<double>&, const Index3&);
 
 }  // namespace thalweg::lbm

@@ -36,18 +36,20 @@ struct SubgridState {
 
 // The momentum flux through a cell, the mean of before and after the coming collision: with P = sum c_a c_b f_i each,
 //   (P + P^c)/2 = rho/3 delta_ab + rho u_a u_b + (1 - omega/2) Pi_ab
-// exactly, whatever the collision model (omega_b on the trace). The last term is minus the stress of viscosity and
-// subgrid model, which share it in proportion to their relaxation times: omega (tau_0 - 1/2) and omega (tau - tau_0).
+// exactly, whatever the collision model. The last term is minus the stress of viscosity and subgrid model, which share
+// it in proportion to their relaxation times: omega (tau_0 - 1/2) and omega (tau - tau_0). With a bulk relaxation time
+// of its own the trace has omega_b, all of it viscosity's; beside bodies, with trt_at_bodies, that part 1 - a of it
+// (collision_trt_at_bodies.hpp).
 struct MomentumFlux {
   double density = 1.0;  // rho
   Vec3 velocity = Vec3::Zero();
   Symmetric<double> viscous{}, subgrid{};  // stresses, positive in tension
 };
 
-// Momentum flux of an owned fluid cell. The incoming populations must be ready: exchange_halo(), apply_walls(), and the
-// links of bodies.
+// Momentum flux of an owned fluid cell (local coordinates). The incoming populations must be ready: exchange_halo(),
+// apply_walls(), and the links of bodies.
 template <typename Real>
-MomentumFlux momentum_flux(const Fluid<Real>& fluid, std::ptrdiff_t cell);
+MomentumFlux momentum_flux(const Fluid<Real>& fluid, const Index3& cell);
 template <typename Real>
 SubgridState subgrid_state(const Fluid<Real>& fluid, std::ptrdiff_t cell);
 

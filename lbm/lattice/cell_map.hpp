@@ -75,6 +75,10 @@ public:
   // within three cells on the other side. (Bodies are known from cell to cell, walls however far they are.)
   const std::uint16_t* in_gaps(int y, int z) const { return in_gaps_.data() + pack_of(0, y, z); }
 
+  // The same bits of an owned cell.
+  bool is_beside_bodies(const Index3& cell) const { return bit(beside_bodies_, cell); }
+  bool is_in_gap(const Index3& cell) const { return bit(in_gaps_, cell); }
+
 private:
   static constexpr int widest_gap_at_wall = 3;  // cells
 
@@ -104,6 +108,10 @@ private:
     std::uint16_t& bits = packs[pack_of(at[0], at[1], at[2])];
     const auto bit = static_cast<std::uint16_t>(1u << at[0] % indexing_.pack());
     bits = static_cast<std::uint16_t>(on ? bits | bit : bits & ~bit);
+  }
+
+  bool bit(const std::vector<std::uint16_t>& packs, const Index3& at) const {
+    return (packs[pack_of(at[0], at[1], at[2])] >> at[0] % indexing_.pack() & 1) != 0;
   }
 
   std::size_t pack_of(int x, int y, int z) const {

@@ -149,17 +149,19 @@ Symmetric<double> second_moment(const std::array<double, 19>& f) {
 }
 
 // (P + P^c)/2 = rho/3 + rho u u less both stresses, where P is taken before a collision and P^c after it: in the open,
-// with one relaxation time, and beside a covered cell, with two.
-void expect_mean_of_before_and_after(const Subgrid& subgrid) {
+// with one relaxation time, and beside covered cells and in the gap between them, with two.
+void expect_mean_of_before_and_after(const Subgrid& subgrid, double bulk_relaxation_time) {
   const Index3 cells{12, 12, 12};
   const Decomposition decomposition(cells, 1.0, {true, true, true}, layout_of_all_ranks(cells));
   CollisionParameters parameters;
   parameters.model = CollisionModel::trt_at_bodies;
   parameters.relaxation_time = 0.501;
+  parameters.bulk_relaxation_time = bulk_relaxation_time;
   parameters.subgrid = subgrid;
   parameters.force[0] = 1e-4;
   Fluid<double> fluid(decomposition, MPI_COMM_WORLD, parameters, {});
   fluid.cells().assign(2, 3, 2, 0);
+  fluid.cells().assign(2, 1, 2, 0);
   fluid.initialise([](const Vec3& p) {
     return FluidState{0.0, 0.05 * Vec3(std::sin(0.5 * p.y()), std::cos(0.7 * p.x()), std::sin(0.4 * p.x() + p.z()))};
   });
@@ -178,7 +180,7 @@ void expect_mean_of_before_and_after(const Subgrid& subgrid) {
     if (!fluid.cells().is_fluid(cell)) return;
     std::array<double, 19> f;
     for (int i = 0; i < D3Q19::directions; ++i) f[i] = fluid.populations().incoming(i, cell);
-    before.push_back({cell, second_moment(f), momentum_flux(fluid, cell)});
+    before.push_back({cell, second_moment(f), momentum_flux(fluid, {x, y, z})});
   });
   fluid.stream_and_collide([](int) {});
   for (const Before& b : before) {
@@ -201,8 +203,10 @@ void expect_mean_of_before_and_after(const Subgrid& subgrid) {
 }
 
 TEST(FlowFields, MomentumFluxIsTheMeanOfBeforeAndAfterTheCollision) {
-  expect_mean_of_before_and_after(Subgrid::smagorinsky(0.27));
-  expect_mean_of_before_and_after(Subgrid::qr());
+  for (const double bulk_relaxation_time : {0.0, 1.0}) {
+    expect_mean_of_before_and_after(Subgrid::smagorinsky(0.27), bulk_relaxation_time);
+    expect_mean_of_before_and_after(Subgrid::qr(), bulk_relaxation_time);
+  }
 }
 
 template <typename Real>
