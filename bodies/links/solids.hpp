@@ -71,7 +71,7 @@ public:
   }
   // The cells of a solid that moves, each once, in memory order.
   const std::vector<InsideCell>& inside(int solid) const { return group(solid).inside; }
-  // The tiles with cells beside a solid that moves, rising.
+  // The tiles with cells beside a solid that moves, each once.
   std::vector<int> tiles(int solid) const;
 
   // The links of a solid in a tile and where they meet it, from the cells that are fluid now.

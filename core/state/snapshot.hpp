@@ -70,7 +70,7 @@ struct FluidFields {
   Block block;                         // in global coordinates
   std::vector<double> velocity;        // m/s, three values a cell (x, y, z together)
   std::vector<double> pressure;        // Pa above the reference (without the hydrostatic part in reduced gravity)
-  std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid; -2, -3, ... static solids
+  std::vector<std::int32_t> grain_id;  // id of the covering grain; -1 fluid; -2, -3, ... solids
   std::vector<double> density;         // kg/m^3
   std::vector<double> shear_rate;      // 1/s, sqrt(2 S_ab S_ab) of the subgrid model
   std::vector<double> eddy_viscosity;  // m^2/s

@@ -27,7 +27,7 @@ struct FluidKeys {
   std::optional<double> time_step;                 // s; read as the longest that suits the flow
   lbm::CollisionModel collision = lbm::CollisionModel::trt_at_bodies;
   std::optional<double> magic_parameter;  // of trt and trt_at_bodies; else CollisionTraits::usual_magic_parameter
-  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with grains, bgk or trt_at_bodies and a subgrid model,
+  // 1, of the trace of the stress; 0: as the shear's. Read as 1 with bgk or trt_at_bodies and a subgrid model,
   // else 0.
   std::optional<double> bulk_relaxation_time;
   Precision precision = Precision::single;

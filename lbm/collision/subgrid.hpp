@@ -7,9 +7,9 @@
 //                flow in two dimensions, so also in laminar water along a wall. The constant is that with which
 //                turbulence decays as measured (benchmarks/validation/decaying_turbulence).
 //
-// The lattice knows S through the non-equilibrium moment Pi of collision.hpp, S = -3 Pi/(2 rho tau) with the relaxation
-// time tau = tau_0 + 3 nu_t that follows from it. Either model then has a closed form:
-//   tau = [tau_0 + sqrt(tau_0^2 + E/rho)]/2,   smagorinsky: E = 18 sqrt(2) C_s^2 sqrt(Pi_ab Pi_ab)   (Hou et al. 1994)
+// The lattice knows S through the non-equilibrium moment Pi of cell_moments.hpp, S = -3 Pi/(2 rho tau) with the
+// relaxation time tau = tau_0 + 3 nu_t that follows from it. Either model then has a closed form:
+//   tau = [tau_0 + sqrt(tau_0^2 + E/rho)]/2,   smagorinsky: E = 18 sqrt(2) C_s^2 sqrt(Pi_ab Pi_ab)   (Hou et al. 1996)
 //                                              qr:          E = 36 C max(0, det P)/(P_ab P_ab), P the traceless part
 #pragma once
 

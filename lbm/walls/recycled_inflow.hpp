@@ -54,7 +54,7 @@ private:
   std::array<int, entering> directions_;
   // Layers of cells, in this rank's coordinates; -1: on other ranks.
   int plane_ = -1, inlet_ = -1;
-  int plane_rank_ = -1, inlet_rank_ = -1;  // where this rank's inlet takes d_o from, and its plane sends them to
+  int plane_rank_ = -1, inlet_rank_ = -1;  // where this rank's inlet takes f_o from, and its plane sends it to
   std::vector<Entering> recycled_;         // of the cells in the plane or at the inlet
   double mass_;                            // M
 };
