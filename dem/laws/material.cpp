@@ -153,7 +153,8 @@ double stiffness_lasting(double duration, const ContactParameters& p, double eff
     return effective_mass * (omega * omega + beta * beta);
   }
   const double zeta = damping_ratio_of_restitution(*p.restitution, p.attraction);
-  return effective_mass * omega * omega / (zeta < 1.0 ? (1.0 - zeta) * (1.0 + zeta) : zeta * zeta);
+  const double swing = (1.0 - zeta) * (1.0 + zeta);
+  return effective_mass * omega * omega / (p.attraction ? swing : std::max(swing, zeta * zeta));
 }
 
 namespace {

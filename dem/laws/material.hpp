@@ -101,8 +101,8 @@ double effective_mass(double mass_1, bool held_1, double mass_2, bool held_2);
 double contact_time(double normal_stiffness, double effective_mass, double damping);
 
 // N/m: the normal stiffness with which a linear contact of this effective mass (kg) lasts so long (s): half a period of
-// the spring with its dashpot, t_c = pi/sqrt(k/m* - (gamma/(2 m*))^2); with a restitution so low that nothing swings,
-// pi/beta.
+// the spring with its dashpot, t_c = pi/sqrt(k/m* - (gamma/(2 m*))^2); pi/beta where that is shorter and there is no
+// attraction: the force is then over long before half a period, which grows without limit towards zeta = 1.
 double stiffness_lasting(double duration, const ContactParameters& parameters, double effective_mass);
 
 // Contact time (s) of any law, between grains of one material and against a wall of another. effective_radius: m, used

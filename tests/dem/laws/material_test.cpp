@@ -67,6 +67,23 @@ TEST(Restitution, InverseIsExact) {
       EXPECT_NEAR(restitution_of_damping_ratio(damping_ratio_of_restitution(e, attraction), attraction), e, 1e-13) << e;
 }
 
+// m* (pi/t)^2/max(1 - zeta^2, zeta^2): at zeta = 1, which is e = exp(-2), m* (pi/t)^2 from both sides.
+TEST(Stiffness, GoesOnWhereNothingSwings) {
+  constexpr double mass = 1e-4, duration = 5e-4, limit = mass * std::numbers::pi * std::numbers::pi / 25e-8;
+  for (const double e : {0.3, 0.2, 0.16, 0.1354, 0.1353, 0.13, 0.05}) {
+    ContactParameters contact = test::glass(e);
+    contact.normal_stiffness = stiffness_lasting(duration, contact, mass);
+    EXPECT_NEAR(contact_time(contact.normal_stiffness, mass, Damping(contact).coefficient(mass)), duration,
+                1e-12 * duration)
+        << e;
+  }
+  for (const double e : {0.999 * std::exp(-2.0), 1.001 * std::exp(-2.0)})
+    EXPECT_NEAR(stiffness_lasting(duration, test::glass(e), mass), limit, 0.01 * limit);
+  // A contact that may pull ends with its overlap, after half a period, however slow that is.
+  const double zeta = damping_ratio_of_restitution(0.01, true);
+  EXPECT_NEAR(stiffness_lasting(duration, test::glass(0.01, true), mass), limit / (1.0 - zeta * zeta), 1e-9 * limit);
+}
+
 TEST(ContactParameters, RefusesTheImpossible) {
   ContactParameters contact = test::glass(0.9);
   EXPECT_NO_THROW(check(contact));
