@@ -109,8 +109,8 @@ void check_images(const Plane& plane, const PeriodicBox& box, double largest_rad
   const PlateExtent& plate = *plane.plate;
   const Vec3 across = plane.normal.cross(plate.along);
   for (int axis = 0; axis < 3; ++axis) {
-    const double u = std::abs(plate.along[axis]), v = std::abs(across[axis]);
-    const bool askew = std::min(u, v) > 1e-9;
+    const double u = std::abs(plate.along[axis]), v = std::abs(across[axis]), w = std::abs(plane.normal[axis]);
+    const bool askew = std::max({std::min(u, v), std::min(u, w), std::min(v, w)}) > 1e-9;
     const double reach = u * plate.half_length + v * plate.half_width;
     if (box.periodic[axis] && askew && reach + largest_radius > 0.5 * box.size[axis])
       throw InputError(fmt::format(

@@ -182,6 +182,24 @@ TEST(Plate, HasPeriodicImages) {
   check_images(askew, box, radius);
   askew.plate->along = Vec3(0.6, 0.8, 0.0);
   EXPECT_THROW(check_images(askew, box, radius), InputError);
+  // Sloping along one, too: at the foot of this one, below its middle, the head of its image would not be seen.
+  Plane sloping = plate(Vec3(0.025, 0.025, 0.03), 0.029, 0.02, Vec3(-0.6, 0.0, 0.8));
+  sloping.plate->along = Vec3(0.8, 0.0, 0.6);
+  EXPECT_THROW(check_images(sloping, box, radius), InputError);
+  sloping.plate->half_length = 0.028;  // 22.4 mm along x, and a grain of 2.5 mm
+  check_images(sloping, box, radius);
+  for (double x = 0.0; x < 0.05; x += 1e-3) {
+    // Nearest of many points of the plate and its images.
+    const Vec3 at(x, 0.025, 0.045);
+    double nearest = 1.0;
+    for (int image = -1; image <= 1; ++image)
+      for (int n = -1000; n <= 1000; ++n)
+        nearest = std::min(
+            nearest, (at - sloping.point - Vec3(0.05 * image, 0.0, 0.0) - n * 28e-6 * sloping.plate->along).norm());
+    if (nearest < radius) {
+      EXPECT_NEAR(sloping.seen_from(at, box).distance, nearest, 1.5e-5) << x;
+    }
+  }
 }
 
 TEST(Plate, IsRefusedWithoutLengthOrOffItsPlane) {
