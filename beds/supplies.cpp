@@ -82,7 +82,7 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
                                                    "section grains with one population at least")
                                      : fmt::format("there is no such population; give one of 0 to {}", count - 1));
   const Population& population = populations[static_cast<std::size_t>(supply.population)];
-  if (population.held())
+  if (population.held() || population.prescribed_angular_velocity)  // a supply's grains are free in all ways
     throw KeyError("population",
                    "its grains are held or move as prescribed; give the number of one whose grains are "
                    "free");

@@ -47,12 +47,16 @@ void TravellingBody::place(const Vec3& centre, const PeriodicBox& box) {
 }
 
 void TravellingBody::set_velocity(const Vec3& velocity) {
-  for (GrainRow& row : rows) {
-    row.value[GrainRow::velocity] = plain(velocity);
-    row.value[GrainRow::angular_velocity] = {};
+  // A member holds what its clump holds.
+  const bool keeps_spin = holds_rotation(static_cast<Motion>(rows.front().motion));
+  const Vec3 spin = keeps_spin ? Vec3(rows.front().value[GrainRow::angular_velocity].data()) : Vec3::Zero();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    rows[r].value[GrainRow::velocity] = plain(velocity + spin.cross(arm(r)));
+    rows[r].value[GrainRow::angular_velocity] = plain(spin);
   }
   if (!clump) return;
   set(velocity, clump->velocity);
+  if (keeps_spin) return;
   set(Vec3::Zero(), clump->angular_momentum);
   set(Vec3::Zero(), clump->angular_velocity);
 }

@@ -28,7 +28,7 @@ struct TravellingBody {
   void renumber(GlobalId first_id);  // gives it the ids from this one on
   // Puts its centre at a place (m), with the motion that it has and without forces.
   void place(const Vec3& centre, const PeriodicBox& box);
-  void set_velocity(const Vec3& velocity);  // m/s; it has no spin then
+  void set_velocity(const Vec3& velocity);  // m/s; it has no spin then, but one that is held
 };
 
 // The bodies that these seeds make, as they lie.

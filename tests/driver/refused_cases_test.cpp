@@ -169,6 +169,10 @@ INSTANTIATE_TEST_SUITE_P(
             {"grains.0.fixed=true",
              "supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},
             {"supplies.0.population", "its grains are held"}},
+        Bad{"a_supply_of_grains_with_a_prescribed_spin",
+            {"grains.0.prescribed_angular_velocity=[0, 1, 0]",
+             "supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},
+            {"supplies.0.population", "its grains are held or move as prescribed"}},
         Bad{"a_sink_that_returns_outside_the_box",
             {"sinks=[{region: {lower: [0, 0, 0], upper: [0.01, 0.01, 0.07]}, recirculation: {region: {lower: [0, 0, "
              "0.05], upper: [0.07, 0.01, 0.07]}}}]"},

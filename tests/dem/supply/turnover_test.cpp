@@ -296,6 +296,30 @@ TEST(Turnover, AGrainThatCannotKeepItsHeightComesInAtRest) {
   }
 }
 
+TEST(Turnover, APrescribedSpinIsKeptOnTheWayBack) {
+  const PeriodicBox box = box_on(1).box();
+  const Vec3 spin(1.0, 20.0, -3.0), velocity(0.1, 0.2, 0.3);
+  for (const Motion motion : {Motion::free, Motion::held_rotation}) {
+    GrainSeed grain = test::glass_sphere(0, Vec3(0.01, 0.01, 0.01));
+    ClumpSeed clump = test::glass_clump(1, test::pebble(), Vec3(0.03, 0.01, 0.01));
+    grain.motion = clump.motion = motion;
+    grain.angular_velocity = clump.angular_velocity = spin;
+    const Vec3 after = holds_rotation(motion) ? spin : Vec3::Zero();
+    for (TravellingBody& body : bodies_of(GrainSeeds{{grain}, {clump}}, box)) {
+      body.set_velocity(velocity);
+      for (std::size_t r = 0; r < body.rows.size(); ++r) {
+        EXPECT_EQ(Vec3(body.rows[r].value[GrainRow::angular_velocity].data()), after);
+        EXPECT_LT((Vec3(body.rows[r].value[GrainRow::velocity].data()) - velocity - after.cross(body.arm(r))).norm(),
+                  1e-15);
+      }
+      if (!body.clump) continue;
+      EXPECT_EQ(Vec3(body.clump->velocity), velocity);
+      EXPECT_EQ(Vec3(body.clump->angular_velocity), after);
+      EXPECT_EQ(Vec3(body.clump->angular_momentum).isZero(0.0), after.isZero(0.0));
+    }
+  }
+}
+
 // Sixteen cells of 2.5 mm are 40 mm, but for the rounding that 0.04 has as well.
 TEST(Turnover, ASinkMayReachTheEndOfTheBox) {
   GrainParameters p = busy_box();
