@@ -34,6 +34,10 @@ void Entrainment::observe(const Snapshot& snapshot) {
   count(take_samples(snapshot, bodies), snapshot.time);
 }
 
+bool Entrainment::is_listed(GlobalId id) const {
+  return std::binary_search(settings_.grains.begin(), settings_.grains.end(), id);
+}
+
 void Entrainment::choose(const Snapshot& snapshot, const BodiesHere& bodies) {
   chosen_step_ = snapshot.step;
   const std::span<const GlobalId> ids = bodies.ids();
@@ -43,13 +47,13 @@ void Entrainment::choose(const Snapshot& snapshot, const BodiesHere& bodies) {
     for (std::size_t b = 0; b < chosen.size(); ++b)
       chosen[b] = bodies.position(b).z() > lowest && !is_held(settings_.held, ids[b]);
   } else {
-    for (std::size_t b = 0; b < chosen.size(); ++b)
-      chosen[b] = std::binary_search(settings_.grains.begin(), settings_.grains.end(), ids[b]);
+    for (std::size_t b = 0; b < chosen.size(); ++b) chosen[b] = is_listed(ids[b]);
   }
   watch(ids, std::move(chosen));
 }
 
-// ids: of the grains and clumps here. Those watched before are remembered on.
+// ids: of the grains and clumps here. Those watched before are remembered on. Listed ones are also watched where they
+// are not here, between a sink and their return.
 void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen) {
   struct Watched {
     GlobalId id;
@@ -57,15 +61,17 @@ void Entrainment::watch(std::span<const GlobalId> ids, std::vector<char> chosen)
   std::vector<Watched> rows;
   for (std::size_t n = 0; n < ids.size(); ++n)
     if (chosen[n] != 0) rows.push_back({ids[n]});
-  watched_count_ = sum_over_ranks(communicator_, static_cast<std::int64_t>(rows.size()));
   watched_here_.set(ids, std::move(chosen));
   std::vector<char> at_home(memory_.size(), 0);
   for (const Watched& row : homes_->bring_home(rows)) at_home[homes_->location_of(row.id)] = 1;
+  std::int64_t count = 0;
   for (std::size_t m = 0; m < memory_.size(); ++m) {
-    const bool watched = at_home[m] != 0;
+    const bool watched = at_home[m] != 0 || is_listed(homes_->id_at(m));
     if (watched != memory_[m].watched) memory_[m] = Memory{};
     memory_[m].watched = watched;
+    count += watched ? 1 : 0;
   }
+  watched_count_ = sum_over_ranks(communicator_, count);
 }
 
 // Brings states and contacts of the watched grains to their homes. Returns the ids of those here that have started,

@@ -132,6 +132,7 @@ private:
   };
 
   Shares shares() const;
+  bool is_listed(GlobalId id) const;
   void choose(const Snapshot& snapshot, const BodiesHere& bodies);
   void watch(std::span<const GlobalId> ids, std::vector<char> chosen);
   std::vector<GlobalId> take_samples(const Snapshot& snapshot, const BodiesHere& bodies);

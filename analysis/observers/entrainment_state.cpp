@@ -90,10 +90,9 @@ bool Entrainment::load(ArchiveReader& archive) {
   std::int64_t watched = 0;
   bool as_listed = true;
   for (std::size_t m = 0; m < memory_.size(); ++m) {
-    const GlobalId id = homes_->id_at(m);
     memory_[m].watched = rows[m * memory_columns] != 0.0;
     watched += memory_[m].watched ? 1 : 0;
-    as_listed &= memory_[m].watched == std::binary_search(settings_.grains.begin(), settings_.grains.end(), id);
+    as_listed &= memory_[m].watched == is_listed(homes_->id_at(m));
   }
   if (!settings_.grains.empty() && any_rank(communicator_, !as_listed)) {
     homes_.reset();

@@ -286,6 +286,32 @@ TEST(Entrainment, IsNotThatOfAGrainThatASinkPutsElsewhere) {
   EXPECT_EQ(entrainments(false, 0), 1.0);
 }
 
+// It comes back from a sink at 0.5 s, rests, and is 1 m further on at 1.5 s; a restart while it is away changes
+// nothing.
+TEST(Entrainment, IsThatOfAListedGrainThatIsAwayAtFirst) {
+  EntrainmentSettings s = settings({0});
+  s.recirculation = true;
+  const auto look = [](Entrainment& observer, int from, int to) {
+    for (int step = from; step <= to; ++step) {
+      const auto grain = [&](GlobalId) -> std::optional<MadeUpGrain> {
+        if (step < 50) return std::nullopt;
+        return MadeUpGrain{.position = Vec3(step < 150 ? 15.0 : 16.0, 5.0, 1.0)};
+      };
+      observer.observe(MadeUpGrains(MPI_COMM_WORLD, 1, grain, step).snapshot(0.01 * step));
+    }
+  };
+  s.diameter = 2.0;  // it may go as far from one look to the next
+  Entrainment straight(MPI_COMM_WORLD, made_up_box().box(), s), after(MPI_COMM_WORLD, made_up_box().box(), s);
+  look(straight, 0, 20);
+  EXPECT_TRUE(test::load(after, test::saved(straight, MPI_COMM_WORLD)));
+  look(straight, 21, 200);
+  look(after, 20, 200);
+  for (const Entrainment* observer : {&straight, &after}) {
+    EXPECT_EQ(value_of(observer->diagnostics(), "watched_grains"), 1.0);
+    EXPECT_EQ(value_of(observer->diagnostics(), "entrainments"), 1.0);
+  }
+}
+
 void restart(Bed bed, const EntrainmentSettings& given) {
   const PeriodicBox box = bed.decomposition().box();
   Entrainment straight(MPI_COMM_WORLD, box, given), before(MPI_COMM_WORLD, box, given),
