@@ -82,7 +82,7 @@ public:
   std::vector<Diagnostic> results() const override;
 
   // x (m, middle of the column), static_surface (m: mean over the pictures in which the column has a static pixel),
-  // latest_static_surface (m).
+  // latest_static_surface (m; 0 where no pixel is static).
   std::vector<Profile> profiles() const override;
 
   void save(ArchiveWriter& archive) const override;

@@ -1,5 +1,6 @@
-// The datasets of the contacts in a saved state: contact_ids (lower id; higher id, or -1 - w for wall w), and one for
-// each part of the law's history, named after it: contact_spring. One row per contact, sorted by ids.
+// The datasets of the contacts in a saved state: contact_ids (lower id; higher id, or what solid_key() says of walls
+// and solids), and one for each part of the law's history, named after it: contact_spring. One row per contact, sorted
+// by ids.
 #pragma once
 
 #include "core/base/archive.hpp"

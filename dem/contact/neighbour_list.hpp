@@ -32,8 +32,8 @@ struct WallContact {
   std::uint32_t wall;
 };
 
-// Data of the contacts of one kind (pairs, or walls) for their law, one row of doubles per contact: its history, its
-// constants (contact_law.hpp), then zeros up to whole vectors.
+// Data of the contacts of one kind (pairs, walls or solids) for their law, one row of doubles per contact: its history,
+// its constants (contact_law.hpp), then zeros up to whole vectors.
 class ContactRows {
 public:
   ContactRows() : ContactRows({}, {}) {}

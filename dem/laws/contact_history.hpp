@@ -13,7 +13,7 @@
 
 namespace thalweg::dem {
 
-// `second` is the higher id of two grains, or -1 - w for wall w.
+// `second` is the higher id of two grains, -1 - w for wall w, or that of a touch with a solid (solid_key()).
 struct ContactKey {
   GlobalId first, second;
   auto operator<=>(const ContactKey&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 means its zero

@@ -52,8 +52,8 @@ private:
 
 // The contact of two bodies of different materials. Springs in series: stiffnesses and dashpots by the harmonic mean;
 // frictions and restitution by the geometric mean; moduli are kept apart (hertz_mindlin.hpp). Throws InputError where
-// one has a restitution and the other a damping, or where law, attraction, tangential or rolling damping or liquid
-// bridges differ.
+// one has a restitution and the other a damping, or where law, attraction, tangential or rolling damping, kinetic
+// friction ratio or liquid bridges differ.
 ContactParameters mixed(const ContactParameters& a, const ContactParameters& b);
 
 double harmonic_mean(double a, double b);  // 0 where either is 0
@@ -75,7 +75,8 @@ public:
   int count() const { return count_; }
   const Entry& pair(int a, int b) const { return pairs_[static_cast<std::size_t>(a) * count_ + b]; }
   const Entry& wall(int material) const { return walls_[material]; }
-  // Parameters that all materials have in common: law, attraction, tangential and rolling damping, liquid bridges.
+  // Parameters that all materials have in common: law, attraction, tangential and rolling damping, kinetic friction
+  // ratio, liquid bridges, film.
   const ContactParameters& common() const { return common_; }
   bool rolling_friction() const { return rolling_friction_; }  // true if any pair of grains has it
 

@@ -1,5 +1,6 @@
 // The grains a rank knows, as a structure of arrays: those it owns in [0, owned), sorted by id, then its ghosts, copies
-// of grains owned elsewhere, in [owned, total()). SI units. Slots change only in GrainDynamics::prepare() and load().
+// of grains owned elsewhere, in [owned, total()). SI units. Slots change only in GrainDynamics::turn_over(), prepare(),
+// prepare_part() and load().
 #pragma once
 
 #include "core/base/types.hpp"

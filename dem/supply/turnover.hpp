@@ -33,7 +33,7 @@ struct ReturningBody {
   double due = 0.0;  // s
 };
 
-// Throws InputError for a rate that is not positive, a zone outside the box or a velocity that is not finite.
+// Throws InputError for a rate that is not positive, a zone outside the box or impossible heights above the bed.
 void check(std::span<const Supply> supplies, std::span<const Sink> sinks, const PeriodicBox& box);
 
 class Turnover {
