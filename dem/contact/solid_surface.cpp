@@ -25,7 +25,7 @@ double distance_to_segment(const Vec3& point, const Vec3& begin, const Vec3& alo
   return (from - std::clamp(from.dot(along), 0.0, length) * along).norm();
 }
 
-// Vector to the nearest point of a triangle (or within round-off of its sides).
+// Distance of a point from a triangle, on either side (m); within round-off of its sides.
 template <typename Triangle>
 double distance_to_triangle(const Vec3& point, const Triangle& t) {
   bool above = true;
