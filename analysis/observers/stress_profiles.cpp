@@ -156,14 +156,16 @@ std::vector<StressBalance::LayerMeans> StressBalance::all_means() const {
   return all;
 }
 
-// -1: there are no grains.
+// -1: there is no bed, because there are no grains, or because they leave less than a diameter below the top, as in a
+// shear cell.
 int StressBalance::bed_layer(const std::vector<LayerMeans>& layers) const {
   double densest = 0.0;
   for (const LayerMeans& means : layers) densest = std::max(densest, means.solid_fraction);
   int layer = layers_.count() - 1;
   while (layer >= 0 && (densest == 0.0 || layers[static_cast<std::size_t>(layer)].solid_fraction <= 0.5 * densest))
     --layer;
-  return layer;
+  const double top = layers_.bottom(layers_.count());
+  return layer >= 0 && top - layers_.bottom(layer + 1) < scales_.diameter ? -1 : layer;
 }
 
 StressBalance::Difference StressBalance::largest_difference(const std::vector<LayerMeans>& layers,
@@ -205,10 +207,10 @@ std::vector<std::string> StressBalance::remarks() const {
         ->value;
   };
   return {fmt::format(
-      "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa that this leaves to "
-      "the bed, at z = {:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
+      "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa that this {}, at z = "
+      "{:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
       at_sides ? " less what side walls and solids take" : "", 100.0 * value("largest_difference"), value("bed_stress"),
-      value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
+      value("bed_height") > 0.0 ? "leaves to the bed" : "is at most", value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
       value("largest_difference_of_sum_at"))};
 }
 

@@ -97,6 +97,26 @@ TEST(StressBalance, OfASlowFlowOverHeldSpheresIsTheWeightAbove) {
   EXPECT_GT(drag, 0.5 * bed_stress);
 }
 
+// Spheres held at the floor and just below the top of a shear cell: no flow goes over them, so the difference is a share
+// of the largest driving stress, not of the small one that the upper spheres leave above their middle.
+TEST(StressBalance, GrainsThatReachTheTopAreNoBed) {
+  WaterBox box = viscous_box({18, 18, 24}, 9.0, 1.5);
+  const double d = 5e-3, top = 24.0 * box.spacing;
+  box.plate_velocity = 0.01;
+  for (int k = 0; k < 4; ++k)
+    box.seeds.push_back(glass_sphere(k, Vec3((k % 2 + 0.31) * d, 0.4 * d, k < 2 ? 0.52 * d : top - 0.55 * d)));
+  for (dem::GrainSeed& seed : box.seeds) seed.motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  for (int step = 0; step < 100; ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 4}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  double largest = 0.0;
+  for (const double driving : values.at("driving_stress")) largest = std::max(largest, std::abs(driving));
+  EXPECT_EQ(result(balance, "bed_height"), 0.0);
+  EXPECT_NEAR(std::abs(result(balance, "bed_stress")), largest, 1e-12 * largest);
+}
+
 // A sphere held between two plates that slide: nothing drives the fluid but the plates, so that the total stress is the
 // same everywhere once the flow is steady (T = H^2/(pi^2 nu), 10 T: 5e-5 of the start, which is linear and differs from
 // the end by the share of the solid). The rotation stress is the torque on the sphere per area of the box, integrated
