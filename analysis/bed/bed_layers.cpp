@@ -2,6 +2,7 @@
 
 #include "analysis/bed/union_of_spheres.hpp"
 #include "analysis/tools/sphere_in_layer.hpp"
+#include "core/parallel/mpi_session.hpp"
 #include "core/parallel/ranks.hpp"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double windo
       thickness_(box.size.z() / layers_),
       width_(disk_thickness > 0.0 ? disk_thickness : box.size.y()),
       obstacles_(obstacles.spheres),
-      solids_below_(obstacles.solids_below ? obstacles.solids_below(layers_) : std::vector<double>()) {}
+      solids_below_(obstacles.solids_below ? obstacles.solids_below(layers_) : std::vector<double>()),
+      floating_density_(obstacles.floating_density) {}
 
 BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
   std::vector<double> grains = grains_below(snapshot), obstacles = spheres_below(snapshot);
@@ -60,6 +62,28 @@ double BedLayers::force_on_obstacles(const Snapshot& snapshot, const Bed& bed) c
   })[0];
 }
 
+std::vector<char> BedLayers::floating(const Snapshot& snapshot) const {
+  if (floating_density_ <= 0.0) return {};
+  const GrainView& grains = snapshot.grains;
+  std::map<GlobalId, double> of_clump;  // kg/m^3
+  for (const ClumpState& clump : grains.clumps) of_clump[clump.id] = clump.mass / clump.volume;
+  std::vector<char> floating(grains.id.size(), 0);
+  std::int64_t afloat = 0, others = 0;
+  for (std::size_t i = 0; i < floating.size(); ++i) {
+    const double density = grains.is_member(i) ? of_clump.at(grains.clump[i])
+                                               : grains.mass[i] / volume_of(grains.radius[i], grains.disk_thickness);
+    const bool is_free = (grains.held(i) & 1) == 0;
+    floating[i] = is_free && density <= floating_density_ ? 1 : 0;
+    if (floating[i] != 0)
+      ++afloat;
+    else if (!is_obstacle(grains.id[i]))
+      ++others;
+  }
+  afloat = sum_over_ranks(communicator_, afloat);
+  others = sum_over_ranks(communicator_, others);
+  return afloat > 0 && others > 0 ? floating : std::vector<char>();
+}
+
 bool BedLayers::is_obstacle(GlobalId id) const { return std::binary_search(obstacles_.begin(), obstacles_.end(), id); }
 
 std::vector<double> BedLayers::spheres_below(const Snapshot& snapshot) const {
@@ -77,10 +101,10 @@ std::vector<double> BedLayers::spheres_below(const Snapshot& snapshot) const {
 }
 
 std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
-  const std::vector<double> in_layer = reproducible_sums_by_bin(
-      communicator_, layers_, 1, [&, shares = shares_of_members(snapshot.grains)](const TermTaker& take) {
-        give_volumes(snapshot.grains, shares, take);
-      });
+  const std::vector<double> in_layer =
+      reproducible_sums_by_bin(communicator_, layers_, 1,
+                               [&, shares = shares_of_members(snapshot.grains), floating = floating(snapshot)](
+                                   const TermTaker& take) { give_volumes(snapshot.grains, shares, floating, take); });
   std::vector<double> below{0.0};
   for (const double volume : in_layer) below.push_back(below.back() + volume);
   return below;
@@ -88,9 +112,9 @@ std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
 
 // The volume of each grain in each layer.
 void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
-                             const TermTaker& take) const {
+                             const std::vector<char>& floating, const TermTaker& take) const {
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
-    if (is_obstacle(grains.id[i])) continue;
+    if (is_obstacle(grains.id[i]) || (!floating.empty() && floating[i] != 0)) continue;
     const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
     const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
     const int first = static_cast<int>(std::floor(foot / thickness_));

@@ -17,7 +17,7 @@ namespace thalweg::analysis {
 class BedLayers {
 public:
   // window: m, the height over which the solid fraction is averaged. disk_thickness: m, 0: spheres. Obstacles are the
-  // bed where there are no other grains.
+  // bed where there are no other grains, and so are grains that float.
   BedLayers(MPI_Comm communicator, const PeriodicBox& box, double window, double disk_thickness = 0.0,
             const BedObstacles& obstacles = {});
 
@@ -28,6 +28,8 @@ public:
   };
   Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
   double width() const { return width_; }   // m, of the bed
+  // Of each grain here, whether it floats over a bed of others; empty where there is no such grain. Collective.
+  std::vector<char> floating(const Snapshot& snapshot) const;
   // N, along x, of the fluid on the spheres that are obstacles and have their centres above the bed; 0 where they are
   // the bed. The same bits on any ranks; collective.
   double force_on_obstacles(const Snapshot& snapshot, const Bed& bed) const;
@@ -36,7 +38,8 @@ private:
   bool is_obstacle(GlobalId id) const;
   bool are_the_bed(const Snapshot& snapshot) const;
   std::vector<double> grains_below(const Snapshot& snapshot) const;
-  void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares, const TermTaker& take) const;
+  void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
+                    const std::vector<char>& floating, const TermTaker& take) const;
   std::vector<double> spheres_below(const Snapshot& snapshot) const;
 
   MPI_Comm communicator_;
@@ -46,6 +49,7 @@ private:
   double width_;
   std::vector<GlobalId> obstacles_;
   std::vector<double> solids_below_;  // m^3, at the heights of the layers; empty: there are none
+  double floating_density_;           // kg/m^3, as BedObstacles has it
 };
 
 }  // namespace thalweg::analysis

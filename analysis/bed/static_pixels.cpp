@@ -17,7 +17,7 @@ StaticPixels::StaticPixels(MPI_Comm communicator, const PeriodicBox& box, double
       height_(pixel),
       static_time_(static_time) {}
 
-bool StaticPixels::look(const Snapshot& snapshot) {
+bool StaticPixels::look(const Snapshot& snapshot, std::span<const char> left_out) {
   const GrainView& grains = snapshot.grains;
   const bool first_look = !homes_;
   if (first_look) {
@@ -30,7 +30,8 @@ bool StaticPixels::look(const Snapshot& snapshot) {
   rows_.resize(homes_->size() * static_cast<std::size_t>(columns_a_grain_));
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < grains.id.size(); ++i)
-    disks.push_back({grains.id[i], grains.position[i].x(), grains.position[i].z(), grains.radius[i]});
+    if (left_out.empty() || left_out[i] == 0)
+      disks.push_back({grains.id[i], grains.position[i].x(), grains.position[i].z(), grains.radius[i]});
   disks = homes_->bring_home(disks);
   forget_others(disks);
   if (!first_look)

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,9 @@ public:
     return static_cast<double>(1 + 2 * columns_covered(0.5 * largest_diameter)) * sizeof(std::int64_t);
   }
 
-  // Takes a look. True if it completes a picture. Collective.
-  bool look(const Snapshot& snapshot);
+  // Takes a look. True if it completes a picture. left_out: of each grain here, whether the view leaves it out; empty:
+  // none. Collective.
+  bool look(const Snapshot& snapshot, std::span<const char> left_out = {});
 
   std::int64_t columns() const { return columns_; }
   double column_width() const { return width_; }   // m

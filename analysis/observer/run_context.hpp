@@ -53,6 +53,8 @@ struct BedObstacles {
   std::vector<GlobalId> spheres = {};  // ids, ascending
   // m^3, of solids that stand still, at layers + 1 heights from the floor of the box to its top; empty: there are none.
   std::function<std::vector<double>(int layers)> solids_below = {};
+  // kg/m^3: free grains no denser float, and are no grains of the bed either; 0: none do.
+  double floating_density = 0.0;
 };
 
 struct GrainContext {

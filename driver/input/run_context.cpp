@@ -70,6 +70,8 @@ analysis::GrainContext grain_context(const Case& c) {
   for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.spheres.push_back(sphere.id);
   context.obstacles.solids_below = solids_below(c);
   if (!has_fluid(c)) return context;
+  if (gravity_vector(c.gravity).z() < 0.0)
+    context.obstacles.floating_density = (1.0 + neutral_density) * c.fluid.density;
   context.body_force = body_force(c);
   context.submerged_weight = submerged_weight(c);
   context.buoyancy = buoyancy_in_load(c);

@@ -4,7 +4,7 @@ import numpy as np
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import at_equal_intervals
-from thalweg.obstacles import obstacles
+from thalweg.obstacles import floating, obstacles
 from thalweg.run import DRAGGING
 from thalweg.side_view import static_surface
 
@@ -32,13 +32,18 @@ def has_profiles_of(run, start, stop):
 
 
 def bed_height(run, start=-np.inf, stop=np.inf):
-    """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none or times (s) are given, from the
-    frames between them, in layers of a quarter of a diameter."""
-    if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any():
+    """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none, times (s) are given, or grains
+    float over the bed, from the frames between them, in layers of a quarter of a diameter."""
+    if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any() and not any_float(run):
         profiles = run.profiles["grain_profiles"]
     else:
-        profiles = layer_profiles(run, start, stop, 0.25 * run.diameter)
+        profiles = layer_profiles(run, start, stop, 0.25 * run.diameter, bed_only=True)
     return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+
+
+def any_float(run):
+    """Whether the last frame has grains that float over a bed of others."""
+    return len(run.grains) > 0 and bool(floating(run, run.grains[-1]).any())
 
 
 def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):

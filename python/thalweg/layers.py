@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.obstacles import obstacles, solids_in_layers, union_in_layers
+from thalweg.obstacles import floating, obstacles, solids_in_layers, union_in_layers
 
 UNITS = {"z": "m", "solid_fraction": "1", "velocity": "m/s", "flux": "m/s", "granular_temperature": "m^2/s^2",
          "contact_stress": "Pa", "fluid_stress": "Pa", "rotation_stress": "Pa"}
@@ -40,9 +40,10 @@ class LayerSums:
     """Sums over frames of what the grains contribute to layers; profiles() makes means of them. area: of a layer, m^2;
     lengths in m; height: of a period, where z is periodic; thickness: of disks. With a run, its obstacles are no
     grains, and a layer is the room that they leave; where there is nothing else, they are grains, and overlaps count
-    once."""
+    once. bed_only: grains that float over the bed of a run do not count."""
 
-    def __init__(self, edges, area, height=None, thickness=None, run=None):
+    def __init__(self, edges, area, height=None, thickness=None, run=None, bed_only=False):
+        self.bed_only = bed_only
         self.run, self.obstacle_ids, self.union, self.taken = run, None, None, 0.0
         self.solids = solids_in_layers(run, edges) if run else 0.0
         self.edges, self.layer_volumes = np.asarray(edges, float), area * np.diff(edges)
@@ -73,6 +74,8 @@ class LayerSums:
         elif stands.any():
             self.taken = self.taken + self.union
             part[:, stands] = 0.0
+        if self.bed_only:
+            part[:, floating(self.run, frame)] = 0.0
         self.volume += part.sum(axis=1)
         self.flux += part @ frame.velocity
         mass = part * frame.arrays.get("density", 1.0)   # frames whose fields leave it out weigh by volume
@@ -112,13 +115,14 @@ class LayerSums:
         return Columns(found, UNITS)
 
 
-def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None):
+def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None, bed_only=False):
     """Profiles over the height of the box from the frames between two times (s); layers of half a diameter if no
-    thickness (m) is given."""
+    thickness (m) is given. bed_only: without grains that float over the bed."""
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
     disks = run.case.get("disks")
     width = float(disks["thickness"]) if disks else None
-    sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width, run)
+    sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width, run,
+                     bed_only)
     for frame in run.grains.between(start, stop):
         sums.add(frame)
     return sums.profiles()

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.mesh_volume import volumes_in_layers
 
 MERGED, AS_LARGE_AGAIN = 0.05, 2.0   # diameters of the smaller; times the largest free grain
+NEUTRAL = 1e-6                       # of the fluid's density: grains no denser than that float
 ROWS_A_RADIUS = 20
 
 
@@ -53,6 +54,19 @@ def obstacles(run, frame):
     if free.any():
         stands[fixed] |= frame.radius[fixed] >= AS_LARGE_AGAIN * frame.radius[free].max()
     return stands
+
+
+def floating(run, frame):
+    """Which grains of a frame float over a bed of others: free ones no denser than the fluid, as far as frames tell
+    densities. They are no grains of the bed. (Frames with clumps are left to the program.)"""
+    none, fluid = np.zeros(len(frame), bool), run.case.get("fluid")
+    if not fluid or run.gravity[2] >= 0.0 or "density" not in frame.arrays:
+        return none
+    if np.any(frame.arrays.get("clump", -1) >= 0):
+        return none
+    free = np.asarray(frame.arrays.get("held", 0)).astype(int) & 1 == 0
+    afloat = free & (frame.density <= (1.0 + NEUTRAL) * float(fluid["density"]))
+    return afloat if afloat.any() and not (afloat | obstacles(run, frame)).all() else none
 
 
 def union_in_layers(run, edges, position, radius):

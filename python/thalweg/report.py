@@ -185,9 +185,11 @@ def describe_surface(report, name, title, surface):
 
 
 def describe_profiles(report):
-    profiles = layer_profiles(report.run, report.start, report.stop, 0.25 * report.run.diameter)
+    part = report.run, report.start, report.stop, 0.25 * report.run.diameter
+    profiles = layer_profiles(*part)
     report.profiles["layers"] = profiles
     if report.run.case.get("fluid"):
+        profiles = layer_profiles(*part, bed_only=True) if bed.any_float(report.run) else profiles
         surface = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
         describe_surface(report, "surface_by_solid_fraction", "surface", surface)
         report.attempt("water", lambda: describe_water(report, surface))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.errors import RunFolderError
+from thalweg.obstacles import floating
 
 COVERED = 0.6         # share of its perimeter behind others from which a grain is invisible
 NEAREST = 1.0 / 6.0   # diameters: of two projections closer than this only the front one is visible
@@ -64,7 +65,8 @@ class Surface(NamedTuple):
 
 def static_surface(run, time=None, duration=AT_REST):
     """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed
-    the same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it."""
+    the same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it. Grains that
+    float over the bed are left out."""
     times = run.grains.times
     if len(times) < 2 or times[-1] - times[0] < duration:
         raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} s.")
@@ -74,15 +76,17 @@ def static_surface(run, time=None, duration=AT_REST):
     if len(window) < 3:
         raise RunFolderError(f"{run.folder}: static pixels need three frames of the grains in {duration:g} s; "
                              f"set output.grains.every to {duration / 5:g} s or less.")
-    return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0])
+    return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0], lambda frame: floating(run, frame))
 
 
-def surface_of(frames, size, pixel, periodic_x=True):
-    """Outline of the pixels that show the same grain in all frames; see static_surface()."""
+def surface_of(frames, size, pixel, periodic_x=True, left_out=None):
+    """Outline of the pixels that show the same grain in all frames; see static_surface(). left_out: which grains of a
+    frame are not looked at."""
     first, static = None, None
     for frame in frames:
-        shown = front_grains(frame.position, frame.radius, size, pixel, periodic_x)
-        identity = np.where(shown >= 0, frame.id[shown], -1)
+        kept = np.ones(len(frame), bool) if left_out is None else ~left_out(frame)
+        shown = front_grains(frame.position[kept], frame.radius[kept], size, pixel, periodic_x)
+        identity = np.where(shown >= 0, frame.id[kept][shown], -1)
         first = identity if first is None else first
         static = (identity == first if static is None else static & (identity == first))
     static &= first >= 0

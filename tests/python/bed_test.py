@@ -157,6 +157,23 @@ class Layers(made_up.MadeUpFolder):
         (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n")
         self.assertAlmostEqual(bed.shields_number(run, 10 * D), 0.08, 12)
 
+    def test_grains_that_float_are_no_bed(self):
+        # A raft of a layer below the lid, as dense as the bed.
+        still = self.bed_of_layers(10)[:-1]
+        raft = still[np.isclose(still[:, 2], 0.5 * D)] + [0.0, 0.0, SIZE[2] - D]
+        places = np.vstack([still, raft])
+        density = np.where(np.arange(len(places)) < len(still), 2550.0, 900.0)
+        frames = 4
+        self.write_frames(0.2 * np.arange(frames), [places] * frames, density=[density] * frames)
+        run = thalweg.Run(self.folder)
+        self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+        self.assertLess(bed.static_bed_height(run, frames=1) / D, 10.0)
+        self.assertGreater(np.sum(layer_profiles(run)["solid_fraction"][-3:]), 0.1)   # profiles have all grains
+        # Where there is nothing else, they are a bed like others.
+        self.write_frames((0.0,), [raft], density=[density[len(still):]])
+        with self.assertRaisesRegex(thalweg.RunFolderError, "reach the top"):
+            bed.bed_height(thalweg.Run(self.folder))
+
     def test_solids_that_stand_still_take_their_room(self):
         # A block over a quarter of the length, as high as half of the box, and another one that moves.
         case = self.folder / "case.yaml"

@@ -28,10 +28,11 @@ public:
 
   PeriodicBox box() const { return decomposition_.box(); }
 
-  // Until the next call.
-  Snapshot at(std::int64_t step, const std::vector<Vec3>& positions) {
+  // Until the next call. first_light: id from which on grains have half the mass.
+  Snapshot at(std::int64_t step, const std::vector<Vec3>& positions, std::size_t first_light = SIZE_MAX) {
     const auto grain = [&](GlobalId id) {
-      return MadeUpGrain{.radius = 0.5 * d, .position = positions[static_cast<std::size_t>(id)]};
+      const auto n = static_cast<std::size_t>(id);
+      return MadeUpGrain{.radius = 0.5 * d, .mass = n < first_light ? 1.0 : 0.5, .position = positions[n]};
     };
     grains_.emplace(communicator_, static_cast<GlobalId>(positions.size()), grain, step, decomposition_);
     return grains_->snapshot(0.125 * static_cast<double>(step), 0.125);
@@ -161,6 +162,28 @@ TEST(BedSurface, LeavesOutASillOfOverlappingSpheres) {
   alone.observe(spheres.at(0, grains));
   EXPECT_NEAR(value_of(alone.results(), "bulk_solid_fraction_mean"), 0.25, 0.03 * 0.25);
   EXPECT_NEAR(value_of(alone.diagnostics(), "bed_height"), 6.0 * d, 0.08 * d);
+}
+
+// Grains that float lie below the lid as densely as others lie on the floor, and are no bed but where nothing else is.
+TEST(BedSurface, LeavesOutGrainsThatFloat) {
+  Spheres spheres(world);
+  const std::vector<Vec3> bed = cubic_lattice(10);
+  std::vector<Vec3> grains = bed, raft;
+  for (const Vec3& grain : cubic_lattice(1)) raft.emplace_back(grain.x(), grain.y(), 31.5 * d);
+  grains.insert(grains.end(), raft.begin(), raft.end());
+  BedObstacles light;
+  light.floating_density = 0.75 / (std::numbers::pi / 6.0 * d * d * d);  // of 0.75 kg
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0, light),
+      of_bed(world, spheres.box(), keys(), d, flume, 0.0), of_raft(world, spheres.box(), keys(), d, flume, 0.0, light);
+  for (int step = 0; step < 5; ++step) {
+    surface.observe(spheres.at(step, grains, bed.size()));
+    of_bed.observe(spheres.at(step, bed));
+    of_raft.observe(spheres.at(step, raft, 0));
+  }
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 10.0 * d, 1e-12);
+  for (const char* name : {"static_bed_height", "flow_depth", "bed_stress", "shields_number"})
+    EXPECT_EQ(value_of(surface.diagnostics(), name), value_of(of_bed.diagnostics(), name)) << name;
+  EXPECT_NEAR(value_of(of_raft.diagnostics(), "bed_height"), 32.0 * d, 1e-12);
 }
 
 // As once all have gone by a sink.
