@@ -21,15 +21,18 @@ void FlowControl::update(double mean_velocity) {
   countdown_ = target_.interval - 1;
 }
 
-void FlowControl::begin_with(double force) {
+void FlowControl::begin_with(const Force& force) {
   const double t = target_.response_time;
-  integral_ = 4.0 * t * t * force;
-  force_ = force;
+  integral_ = 4.0 * t * t * force.held;
+  force_ = force.whole;
 }
 
-std::optional<double> FlowControl::saved_force(const ArchiveReader& archive) {
+std::optional<FlowControl::Force> FlowControl::saved_force(const ArchiveReader& archive) {
   if (!archive.has("fluid/flow_control_force")) return std::nullopt;
-  return archive.real_attribute("fluid/flow_control_force");
+  const double whole = archive.real_attribute("fluid/flow_control_force");
+  if (!archive.has("fluid/flow_control_response_time")) return Force{whole, whole};  // older checkpoints have none
+  const double t = archive.real_attribute("fluid/flow_control_response_time");
+  return Force{whole, archive.real_attribute("fluid/flow_control_integral") / (4.0 * t * t)};
 }
 
 void FlowControl::save(ArchiveWriter& archive) const {

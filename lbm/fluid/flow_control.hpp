@@ -33,10 +33,14 @@ public:
   bool due() { return countdown_-- <= 0; }
   // Takes the mean velocity along the axis; sets the force for the next interval.
   void update(double mean_velocity);
-  // Begins with a force (lattice units), as in a flow that it keeps steady.
-  void begin_with(double force);
+  // The force of a control: `held` balances what resists the flow, the rest answers the error of the moment.
+  struct Force {
+    double whole, held;
+  };
+  // Begins with a force (lattice units); of a flow that goes on as it was, the next force is what it would have been.
+  void begin_with(const Force& force);
   // The force of a control that was saved, in its lattice units; none of a flow that none controlled.
-  static std::optional<double> saved_force(const ArchiveReader& archive);
+  static std::optional<Force> saved_force(const ArchiveReader& archive);
 
   void save(ArchiveWriter& archive) const;
   // Goes on with the force of a control with another response time.

@@ -126,9 +126,9 @@ void Fluid<Real>::control_flow(const FlowTarget& target) {
 
 template <typename Real>
 void Fluid<Real>::begin_control_of(const ArchiveReader& archive, double unit) {
-  const std::optional<double> force = FlowControl::saved_force(archive);
+  const std::optional<FlowControl::Force> force = FlowControl::saved_force(archive);
   if (!control_ || !force) return;
-  control_->begin_with(unit * *force);
+  control_->begin_with({unit * force->whole, unit * force->held});
   parameters_.force[control_->target().axis] = control_->force();
   carry_force();
 }

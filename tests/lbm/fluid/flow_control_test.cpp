@@ -122,6 +122,29 @@ TEST(FlowControl, BeginsWithTheForceOfASavedFlow) {
   EXPECT_EQ(free.parameters().force[0], 0.0);
 }
 
+// A flow that has not reached its target, as the start of another run: saved where the control looks next, it goes on
+// as the first one does. The part of the force that answers the error is made anew; counted twice, it would make the
+// force larger by more than a half here.
+TEST(FlowControl, BeginsAFlowThatSpeedsUpAsItWouldGoOn) {
+  const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
+  const FaceConditions faces = between_plates().faces;
+  Fluid<double> first(decomposition, MPI_COMM_SELF, viscous(), faces);
+  Fluid<double> goes_on(decomposition, MPI_COMM_SELF, viscous(), faces);
+  for (Fluid<double>* fluid : {&first, &goes_on}) fluid->control_flow({0, 0.01, 50.0, 5});
+  for (int step = 0; step < 60; ++step) first.advance();
+  const test::MemoryArchive saved = test::saved(first, MPI_COMM_SELF);
+  test::MemoryReader reader(saved);
+  goes_on.begin_control_of(reader, 1.0);
+  goes_on.load_populations(reader);
+  EXPECT_EQ(goes_on.parameters().force[0], first.parameters().force[0]);
+  for (int step = 0; step < 100; ++step) {
+    first.advance();
+    goes_on.advance();
+    const double force = first.parameters().force[0];
+    ASSERT_NEAR(goes_on.parameters().force[0], force, 1e-9 * force) << step;
+  }
+}
+
 // With another response time the force goes on from where it was, in a steady flow and in one that speeds up: over the
 // next interval the error falls by at most k F, which is k/T of F = e/T and more, and the integral adds k e/(4 T^2), a
 // quarter of that.
