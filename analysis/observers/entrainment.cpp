@@ -253,7 +253,7 @@ std::vector<std::string> Entrainment::remarks() const {
   if (shares_ > 1) text += fmt::format(", +- {:.2g} (standard error of {} starts)", found.error, shares_);
   if (without_onset_ > 0)
     text += fmt::format(
-        "; {} began before the memory of {:g} s and {} without a share: give a longer analysis.entrainment.memory",
+        "; {} began before the recorded {:g} s and {} left out of the mean: give a longer analysis.entrainment.memory",
         without_onset_, settings_.memory, without_onset_ == 1 ? "is" : "are");
   return {text};
 }

@@ -11,7 +11,7 @@ namespace {
 // from, until: s.
 std::string begins_too_late(const char* section, double from, double until) {
   return fmt::format(
-      "The measurement analysis.{0} begins at {1} s, after the end of the run at {2} s, and gives nothing: consider "
+      "The measurement analysis.{0} begins at {1} s, after the end of the run at {2} s, and measures nothing: consider "
       "analysis.{0}.from: {3:.2g}.",
       section, from, until, 0.5 * until);
 }
@@ -19,7 +19,7 @@ std::string begins_too_late(const char* section, double from, double until) {
 // every: s, 0: with the rows of the series. until: s.
 std::string measures_too_rarely(const char* section, double every, double until) {
   return fmt::format(
-      "The measurement analysis.{} is made {}, and the run ends after {} s, before the first: consider "
+      "The measurement analysis.{} is made {}, but the run ends after {} s, before the first: consider "
       "analysis.{}.every: {:.2g}.",
       section, every > 0.0 ? fmt::format("every {} s", every) : "with the rows of the series", until, section,
       0.01 * until);

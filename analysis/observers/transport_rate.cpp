@@ -136,7 +136,7 @@ std::vector<std::string> TransportRate::remarks() const {
   const std::string mean = fmt::format("transport: {} = {}{}", scales_.have_q_star() ? "q*" : "q_s",
                                        with_error(q_s_, unit), scales_.have_q_star() ? "" : " m^2/s");
   if (q_s_.count() == 1)
-    return {fmt::format("{}, a single measurement, at {:.4g} s: an error takes at least two", mean, first_time_)};
+    return {fmt::format("{}, a single measurement, at {:.4g} s: an error needs at least two", mean, first_time_)};
   return {fmt::format("{}, deviation {:.2g}, from {:.4g} to {:.4g} s ({} measurements worth {:.3g} independent ones{})",
                       mean, q_s_.deviation() / unit, first_time_, last_time_, q_s_.count(), error.independent,
                       error.holds() ? "" : ": too few, the error is larger"),

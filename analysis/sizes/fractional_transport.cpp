@@ -239,11 +239,10 @@ std::vector<Diagnostic> FractionalTransport::results() const {
 std::vector<std::string> FractionalTransport::remarks() const {
   if (measurements() == 0) return {};
   const double bed = bed_d50(), load = load_d50();
-  return {
-      fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}", bed,
-                  with_error(surface_d50_, 1.0),
-                  load > 0.0 ? fmt::format("{:.4g} m", load) : "not known, as nothing moves downstream on the whole",
-                  with_error(surface_d50_, bed))};
+  return {fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}", bed,
+                      with_error(surface_d50_, 1.0),
+                      load > 0.0 ? fmt::format("{:.4g} m", load) : "unknown, as the net transport is not downstream",
+                      with_error(surface_d50_, bed))};
 }
 
 std::vector<Profile> FractionalTransport::profiles() const {
@@ -313,8 +312,8 @@ void describe(SectionVisitor& visit, FractionalTransportKeys& keys) {
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
   visit.real_list("edges", keys.edges,
                   {.unit = "m",
-                   .meaning = "of the size classes, rising, covering all free grains; default: the sieves of the case, "
-                              "a class for each of up to ten sizes, or classes of 1/2 phi",
+                   .meaning = "of the size classes, in rising order, covering all free grains; default: the sieves of "
+                              "the case, a class for each of up to ten sizes, or classes of 1/2 phi",
                    .above = 0.0,
                    .examples = {2e-3, 4e-3, 8e-3}});
   describe_moving_speed(visit, keys.moving_speed);
@@ -330,24 +329,22 @@ void check(const FractionalTransportKeys& keys, const RunContext& run) {
   const GrainContext& grains = *run.grains;
   if (run.box.periodic[2])
     throw KeyError("",
-                   "the surface of a bed is seen from above, and here z is periodic; remove the section or give "
+                   "the surface of a bed is seen from above, but z is periodic; remove the section or give "
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
-  if (!grains.any_free())
-    throw KeyError("", "no grain is free to move, so that there is no transport; remove the section");
+  if (!grains.any_free()) throw KeyError("", "no grain is free to move, so there is no transport; remove the section");
   if (keys.edges.empty()) return;
   constexpr double rounding = 1e-9;
   if (keys.edges.front() > (1.0 + rounding) * grains.smallest_free ||
       keys.edges.back() < (1.0 - rounding) * grains.largest_free)
-    throw KeyError("edges",
-                   fmt::format("they reach from {:g} to {:g} m and must cover all free grains, from {:g} to "
-                               "{:g} m",
-                               keys.edges.front(), keys.edges.back(), grains.smallest_free, grains.largest_free));
+    throw KeyError(
+        "edges", fmt::format("the edges reach from {:g} to {:g} m but must cover all free grains, from {:g} to {:g} m",
+                             keys.edges.front(), keys.edges.back(), grains.smallest_free, grains.largest_free));
 }
 
 std::optional<std::string> warning(const FractionalTransportKeys&, const RunContext& run) {
   if (run.grains->smallest_free != run.grains->largest_free) return std::nullopt;
   return fmt::format(
-      "All free grains have one size, {:g} m, so that analysis.fractional_transport has one class: consider "
+      "All free grains have one size, {:g} m, so analysis.fractional_transport has one class: consider "
       "analysis.transport_rate alone.",
       run.grains->largest_free);
 }

@@ -78,7 +78,7 @@ double TrendVerdict::as_number() const {
 
 std::string TrendVerdict::sentence(double unit) const {
   if (trend == Trend::too_few_values)
-    return fmt::format("too short a time to tell whether it is steady, which takes {:.0f} independent values",
+    return fmt::format("too short a time to tell whether it is steady, which needs {:.0f} independent values",
                        fewest_independent_values);
   const std::string line = fmt::format(
       "a straight line through it changes by {:+.2g} +- {:.2g} over this time, which is", drift / unit, error / unit);

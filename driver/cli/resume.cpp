@@ -51,10 +51,10 @@ Resumption resumption_of(const io::RunFolder& folder, double until, io::FolderLo
   if (fs::remove(folder.stop(), ignored)) return Resumption::asked_to_stop;
   if (folder.has_checkpoint()) return Resumption::go_on;
   if (folder.has_had_checkpoint() || finished_until(folder))
-    throw InputError(fmt::format(
-        "{}: the run in it has not reached {:g} s, and its checkpoints have been removed, so that it cannot go "
-        "on; it is left alone: choose another folder with --out, or replace it with --overwrite.",
-        folder.path().string(), until));
+    throw InputError(
+        fmt::format("{}: the run in it has not reached {:g} s and cannot continue, as its checkpoints have been "
+                    "removed; it is left alone: choose another folder with --out, or replace it with --overwrite.",
+                    folder.path().string(), until));
   return Resumption::begin_again;
 }
 

@@ -73,8 +73,8 @@ std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& l
       return Outcome::finished;
     case Resumption::asked_to_stop:
       log.line(
-          fmt::format("{}: thalweg stop was given after the last run had ended, so this one does not start; the same "
-                      "command continues the run",
+          fmt::format("{}: thalweg stop was given after the last run had ended, so this one does not start; repeat the "
+                      "command to continue the run",
                       name));
       return Outcome::asked_to_stop;
     case Resumption::go_on:

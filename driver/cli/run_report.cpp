@@ -77,9 +77,9 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
     log.line(fmt::format("finished{} at {:.6g} s: {}", record.early.empty() ? "" : ", " + record.early + ",",
                          system.time(), folder.summary().string()));
   else
-    log.line(
-        fmt::format("not finished, {}: at {:.6g} s; to go on, repeat the command with --resume (and without --restart)",
-                    record.reason, system.time()));
+    log.line(fmt::format(
+        "not finished, {}: at {:.6g} s; to continue, repeat the command with --resume (and without --restart)",
+        record.reason, system.time()));
 }
 
 std::int64_t allowed_restless(const Case& c) {

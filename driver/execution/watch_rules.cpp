@@ -186,11 +186,11 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
   const std::string shorter_step = fmt::format("shorten fluid.time_step (it is {:.4g} s)", step);
   const WatchLimits mean = mean_density_limits(c);
   rules.push_back({"largest_lattice_velocity", Side::above, always(fast_lattice_velocity, broken_lattice_velocity),
-                   "the largest velocity of the fluid in cells a step",
+                   "the largest velocity of the fluid in cells per step",
                    "The flow is too fast for the step, or the collision has become unstable: " + shorter_step +
                        ", or see docs/stability.md for fluid.collision and fluid.subgrid_model."});
   rules.push_back({"fast_cell_fraction", Side::above, always(most_fast_cells, never),
-                   "the share of fluid cells that move at more than 0.15 cells a step",
+                   "the share of fluid cells that move at more than 0.15 cells per step",
                    "The flow is too fast for the step: " + shorter_step + "."});
   rules.push_back({"mean_density_deviation", Side::either, always(mean.warn, mean.stop),
                    "the deviation of the fluid's mean density",
@@ -199,14 +199,14 @@ void add_fluid_rules(const Case& c, std::vector<WatchRule>& rules) {
                                     shorter_step + "."
                    : c.grains.empty()
                        ? "The collision has become unstable, or rounding adds up: " + shorter_step +
-                             ", or take fluid.precision: double."
-                       : "Grains cost the fluid more than their links can return, or the collision has "
+                             ", or set fluid.precision: double."
+                       : "Grains take more mass from the fluid than their links can return, or the collision has "
                          "become unstable: " +
                              shorter_step +
                              "; mass_by_links and the columns beside it in series.csv show where the mass goes."});
   const std::string waves =
-      "Pressure waves of this size come from a flow or grains that start or stop at once, or from "
-      "an unstable collision: begin with a smoother state (initial, grains.0.velocity), or " +
+      "Pressure waves of this size come from a flow or grains that start or stop abruptly, or from an unstable "
+      "collision: begin with a smoother state (initial, grains.0.velocity), or " +
       shorter_step + ".";
   rules.push_back({"smallest_density_deviation", Side::below,
                    always(std::min(rest + largest_wave, 0.9 * emptiest), emptiest),
@@ -243,8 +243,8 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
          return WatchLimits{std::min({suspicious_speed * speed, fast_lattice_velocity * unit, stop}), stop};
        },
        "the largest speed of a grain",
-       fmt::format("Neither the flow nor a fall gives a grain this speed; its contacts or its load do: check "
-                   "overlaps at the start, or shorten {} or {}.",
+       fmt::format("Neither the flow nor free fall explains this speed; the contacts or the fluid load of the grain "
+                   "must cause it: check overlaps at the start, or shorten {} or {}.",
                    has_fluid(c) ? "fluid.time_step" : "run.time_step", change_of_contacts(c, Contacts::softer))});
   double allowed = 0.0;
   for (const beds::Population& grains : c.grains)

@@ -277,20 +277,19 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (!can_be_placed_here(c))
     lines.push_back("           too many grains to be placed on this machine; the run checks whether they fit");
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
-  lines.push_back(fmt::format(
-      "time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... measures, and "
-      "plans the run on more",
-      loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
+  lines.push_back(
+      fmt::format("time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... "
+                  "measures it and predicts it on more cores",
+                  loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
 }
 
 std::string verdict_text(const Case& c, std::size_t warnings) {
   if (warnings > 0)
-    return fmt::format(
-        "{} warning{}, the gravest first: correct the case before you rely on its results (check --solve)", warnings,
-        warnings == 1 ? "" : "s");
+    return fmt::format("{} warning{}: correct the case before you rely on its results (check --solve)", warnings,
+                       warnings == 1 ? "" : "s, the gravest first");
   const std::string drag = drag_text(c);
   return "no warning" +
-         (drag.empty() ? std::string() : "; error left at these cells: drag " + drag + " (docs/accuracy.md)");
+         (drag.empty() ? std::string() : "; error at this cell size: drag " + drag + " (docs/accuracy.md)");
 }
 
 using LightestGrains = std::vector<dem::LightestGrain>;  // by material

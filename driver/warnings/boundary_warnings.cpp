@@ -42,12 +42,11 @@ double net_inflow(const Case& c) {
 std::string sucks(const Case& c, std::size_t face) {
   const Vec3 reversed = -c.domain.faces[face].velocity;
   const bool beside_an_inlet = is(c, opposite(face), FaceType::velocity_inlet) && inflow(c, opposite(face)) > 0.0;
-  return fmt::format(
-      "The velocity of the velocity_inlet {0} points out of the box, so that it takes fluid away: consider {1}.",
-      face_key(c.domain, face),
-      beside_an_inlet ? fmt::format("{}: pressure_outlet", face_key(c.domain, face))
-                      : fmt::format("{}.velocity: [{:g}, {:g}, {:g}]", face_key(c.domain, face), reversed.x() + 0.0,
-                                    reversed.y() + 0.0, reversed.z() + 0.0));
+  return fmt::format("The velocity of the velocity_inlet {0} points out of the box, so it removes fluid: consider {1}.",
+                     face_key(c.domain, face),
+                     beside_an_inlet ? fmt::format("{}: pressure_outlet", face_key(c.domain, face))
+                                     : fmt::format("{}.velocity: [{:g}, {:g}, {:g}]", face_key(c.domain, face),
+                                                   reversed.x() + 0.0, reversed.y() + 0.0, reversed.z() + 0.0));
 }
 
 }  // namespace
@@ -66,8 +65,8 @@ Warnings swapped_floor(const Case& c) {
   const Remedy swapped{
       word_change("domain.boundaries.bottom", word, [lid](Case& other) { other.domain.faces[bottom] = lid; }),
       word_change("domain.boundaries.top", "free_slip", [floor](Case& other) { other.domain.faces[top] = floor; })};
-  return {{fmt::format("The bottom is free_slip and the top {}, which look swapped: the flow slides over the floor and "
-                       "is held by the lid",
+  return {{fmt::format("The bottom is free_slip and the top {}, which look swapped: the fluid slips over the floor and "
+                       "sticks to the lid",
                        word),
            {{swapped, {}}},
            "no_slip at the bottom and free_slip at the top"}};
@@ -80,9 +79,8 @@ Warnings inlets(const Case& c) {
     if (inflow(c, face) < 0.0) found.push_back(sucks(c, face));
     if (inflow(c, face) == 0.0)
       found.push_back(
-          fmt::format("The velocity of the velocity_inlet {0} has no part into the box, so that no fluid comes in: "
-                      "consider another "
-                      "{0}.velocity in m/s, or {0}.type: moving.",
+          fmt::format("The velocity of the velocity_inlet {0} has no component into the box, so no fluid comes in: "
+                      "consider another {0}.velocity in m/s, or {0}.type: moving.",
                       face_key(c.domain, face)));
   }
   constexpr double rounding = 1e-6;  // of what comes in and leaves
@@ -93,10 +91,10 @@ Warnings inlets(const Case& c) {
           std::max(most, std::abs(inflow(c, face)) * c.domain.size.prod() / c.domain.size[static_cast<int>(face / 2)]);
   const double net = net_inflow(c);
   if (!any(c, FaceType::pressure_outlet) && std::abs(net) > rounding * most)
-    found.push_back(fmt::format(
-        "A velocity_inlet {} the box and no face lets the fluid {}, so that its pressure {} without limit: consider a "
-        "pressure_outlet.",
-        net > 0.0 ? "fills" : "empties", net > 0.0 ? "out" : "in", net > 0.0 ? "rises" : "falls"));
+    found.push_back(
+        fmt::format("A velocity_inlet {} the box and no face lets the fluid {}, so its pressure {} without limit: "
+                    "consider a pressure_outlet.",
+                    net > 0.0 ? "fills" : "empties", net > 0.0 ? "out" : "in", net > 0.0 ? "rises" : "falls"));
   return found;
 }
 
@@ -105,10 +103,10 @@ Warnings outlets(const Case& c) {
   if (any(c, FaceType::velocity_inlet)) return found;
   for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
     if (is(c, face, FaceType::pressure_outlet) && !is(c, opposite(face), FaceType::pressure_outlet))
-      found.push_back(fmt::format(
-          "Fluid may leave by the pressure_outlet {} and no face brings any in, so that none flows there: consider a "
-          "velocity_inlet opposite to it.",
-          face_key(c.domain, face)));
+      found.push_back(
+          fmt::format("Fluid may leave by the pressure_outlet {}, but no face brings any in, so none flows there: "
+                      "consider a velocity_inlet opposite to it.",
+                      face_key(c.domain, face)));
   return found;
 }
 

@@ -35,8 +35,8 @@ Warnings fast_flow(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   const double lattice_velocity = flow.speed / units_of(c).velocity();
   if (!(lattice_velocity * (1.0 - limit_rounding) > accurate_lattice_velocity)) return {};
-  return {{fmt::format("The flow may reach about {:.2g} m/s ({}), which is {:.2g} cells a step; results are accurate "
-                       "below {:g} and the limit is 0.173",
+  return {{fmt::format("The flow may reach about {:.2g} m/s ({}), which is {:.3g} cells per step; results are accurate "
+                       "below {:g}, and a start above 0.173 is refused",
                        flow.speed, words_of(flow.cause), lattice_velocity, accurate_lattice_velocity),
            {{{fluid_step_change(accurate_lattice_velocity * c.domain.spacing / flow.speed, 2, Rounding::down)}, {}}},
            "a shorter step with finer cells"}};
@@ -84,10 +84,10 @@ Warnings unstable_collision(const Case& c) {
   const double stable = stable_lattice_velocity(c.fluid.collision, excess);
   if (c.fluid.subgrid().on() || (stable > 0.0 && fastest <= stable)) return {};
   return {
-      {fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; the collision "
-                   "chosen was stable there {}",
+      {fmt::format("The relaxation time is only {:.2g} above 1/2 and there is no subgrid model; the chosen collision "
+                   "was stable there {}",
                    excess,
-                   stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells a step", stable)),
+                   stable == 0.0 ? std::string("at no velocity") : fmt::format("up to {:g} cells per step", stable)),
        {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}, {{excess_change(c, calm_excess, Rounding::up)}, {}}}}};
 }
 
@@ -112,16 +112,15 @@ Warnings bulk_relaxation(const Case& c) {
   const double bulk = c.fluid.bulk_relaxation_time.value_or(0.0), excess = relaxation_time(c) - 0.5;
   const bool eddies = c.fluid.subgrid().on();
   if (!eddies && c.fluid.collision == lbm::CollisionModel::trt && bulk > 0.0 && excess < 0.0299)
-    return {
-        {fmt::format("With a bulk relaxation time of its own and no subgrid model the collision trt is unstable at a "
-                     "relaxation time only {:.2g} above 1/2",
-                     excess),
-         {{{bulk_change(0.0)}, {}}, {{collision_change("bgk", lbm::CollisionModel::bgk)}, {}}}}};
+    return {{fmt::format("With a bulk relaxation time of its own and no subgrid model, the collision trt is unstable "
+                         "at a relaxation time only {:.2g} above 1/2",
+                         excess),
+             {{{bulk_change(0.0)}, {}}, {{collision_change("bgk", lbm::CollisionModel::bgk)}, {}}}}};
   // The largest stable stream at tau - 1/2 = 0.003, where the subgrid model brings water (docs/stability.md), to 5 %.
   const double calm = 0.17 / std::sqrt(bulk), fastest = expected_lattice_velocity(c);
   if (!lbm::traits_of(c.fluid.collision).is_bgk_in_bulk || bulk <= 1.0 || excess >= 0.003 || fastest <= calm) return {};
-  return {{fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells a step grows "
-                       "stripes, and this one may reach {:.2g}",
+  return {{fmt::format("With a bulk relaxation time of {:g} steps a stream faster than about {:.2g} cells per step "
+                       "grows stripes, and this one may reach {:.2g}",
                        bulk, calm, fastest),
            {{{bulk_change(1.0)}, {}}}}};
 }
@@ -183,12 +182,11 @@ Warnings sliding_bed(const Case& c) {
   const double ratio = stress_ratio_at_base(c), held = bulk_friction(c);
   if (ratio <= held) return {};
   const double slope = gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio;
-  return {
-      {fmt::format("The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, and "
-                   "grains of this friction sustain about {:.2g}, so that the bed slides as a whole",
-                   ratio, held),
-       {{{slope_change(c, slope)}, {}}},
-       "a smaller slope"}};
+  return {{fmt::format("The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, "
+                       "and grains of this friction sustain about {:.2g}, so the bed slides as a whole",
+                       ratio, held),
+           {{{slope_change(c, slope)}, {}}},
+           "a smaller slope"}};
 }
 
 // Fewer cells than this across a grain do not resolve the flow around it.
@@ -248,9 +246,9 @@ Warnings fast_model_fluid(const Case& c) {
   const double fastest = fastest_model_fluid(c), longest = 0.05 * mean_grain(c).diameter / fastest;
   if (*c.run.time_step <= longest) return {};
   return {
-      {fmt::format("The fluid around a single grain moves at {:.3g} m/s, which is more than a twentieth of a diameter "
-                   "a step",
-                   fastest),
+      {fmt::format(
+           "The fluid around a single grain moves at {:.3g} m/s, which is more than a twentieth of a diameter per step",
+           fastest),
        {{{number_change("run.time_step", longest, 2, Rounding::down,
                         [](Case& other, double step) { other.run.time_step = step; })},
          {}}}}};
@@ -277,7 +275,7 @@ Warnings slow_seepage(const Case& c) {
     return {};
   const double speed = seepage_speed(smallest_diameter(c) / c.domain.spacing);
   if (speed >= 1.0) return {};
-  return {{fmt::format("With bgk water seeps through a dense bed at about {:.1g} of the right speed", speed),
+  return {{fmt::format("With bgk, water seeps through a dense bed at about {:.1g} times the right speed", speed),
            {{{collision_change("trt_at_bodies", lbm::CollisionModel::trt_at_bodies)}, {}}}}};
 }
 

@@ -68,8 +68,8 @@ void warn_of_endless_acceleration(const Case& c, Sentences& found) {
     if (is_held_along(c, axis)) continue;
     const char* what = !has_fluid(c) ? "the grains" : c.grains.empty() ? "the fluid" : "fluid and grains";
     found.push_back(
-        fmt::format("The box is periodic along {} and nothing in it withstands gravity, so that {} gain {:.3g} m/s "
-                    "each second without limit: consider {}.",
+        fmt::format("The box is periodic along {} and nothing in it balances gravity, so {} gain {:.3g} m/s each "
+                    "second without limit: consider {}.",
                     axis_name[axis], what, gained, what_would_hold(c)));
   }
 }
@@ -79,8 +79,8 @@ void warn_of_closed_ends(const Case& c, Sentences& found) {
   for (int axis = 0; axis < 2; ++axis)
     if (gravity[axis] != 0.0 && !drives_flow(c, axis))
       found.push_back(fmt::format(
-          "Walls close the box along {0}, so that gravity along it ({1:.3g} m/s^2) drives no flow and there "
-          "is no Shields number by it: consider domain.boundaries.{0}: periodic{2}.",
+          "Walls close the box along {0}, so gravity along it ({1:.3g} m/s^2) drives no flow and gives no Shields "
+          "number: consider domain.boundaries.{0}: periodic{2}.",
           axis_name[axis], gravity[axis], c.gravity.slope ? ", or gravity.slope: 0 for water at rest" : ""));
 }
 
@@ -90,7 +90,7 @@ void warn_of_uphill_flow(const Case& c, Sentences& found) {
   if (c.grains.empty() || gravity.x() >= 0.0 || gravity.z() >= 0.0 || flow_estimate(c).drive != FlowCause::slope)
     return;
   found.push_back(fmt::format(
-      "Gravity drives the flow towards -x, and {} count along x, which points downstream: consider {}.",
+      "Gravity drives the flow towards -x, but {} take x as downstream: consider {}.",
       c.initial.fluid.log_profile ? "the log profile at the start, Shields number and bed stress"
                                   : "Shields number and bed stress",
       c.gravity.slope ? fmt::format("gravity.slope: {:g}", -*c.gravity.slope)

@@ -21,10 +21,9 @@ Warnings frequent_output(const Case& c) {
   const double step = step_time(c);
   const auto look = [&](const std::string& key, double every, const Setter& set) {
     if (every > 0.0 && every < step * (1.0 - 1e-9))
-      found.push_back(
-          {fmt::format("output.{} = {:g} s is less than a step of {:.3g} s, so that it is written in every step", key,
-                       every, step),
-           {{{number_change("output." + key, step, 3, Rounding::up, set)}, {}}}});
+      found.push_back({fmt::format("output.{} = {:g} s is less than a step of {:.3g} s, so it is written in every step",
+                                   key, every, step),
+                       {{{number_change("output." + key, step, 3, Rounding::up, set)}, {}}}});
   };
   look("series.every", c.output.series.every, [](Case& other, double to) { other.output.series.every = to; });
   look("fluid.every", c.output.fluid.every, [](Case& other, double to) { other.output.fluid.every = to; });
@@ -48,7 +47,7 @@ Warnings long_ramp(const Case& c) {
   if (c.run.ramp <= c.run.until) return {};
   const Change shorter = number_change("run.ramp", 0.5 * c.run.until, 2, Rounding::down,
                                        [](Case& other, double to) { other.run.ramp = to; });
-  return {{fmt::format("Gravity rises until {:g} s and the run ends at {:g} s", c.run.ramp, c.run.until),
+  return {{fmt::format("Gravity rises until {:g} s, but the run ends at {:g} s", c.run.ramp, c.run.until),
            {{{shorter}, {}}, {{until_change(2.0 * c.run.ramp)}, {}}}}};
 }
 
@@ -128,11 +127,10 @@ Warnings sudden_inlet(const Case& c) {
   const Change uniform = word_change("initial.fluid.uniform", fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()),
                                      [v](Case& other) { other.initial.fluid.uniform = v; });
   if (advice.empty()) advice.push_back({{uniform}, {}});
-  return {
-      {fmt::format("The fluid starts at rest and the inlet sets it going at {:.3g} m/s within a step, an impact that "
-                   "throws the grains about",
-                   v.norm()),
-       advice, "a start with the velocity of the inlet"}};
+  return {{fmt::format("The fluid starts at rest and the inlet accelerates it to {:.3g} m/s within a step, an impact "
+                       "that throws the grains about",
+                       v.norm()),
+           advice, "a start with the velocity of the inlet"}};
 }
 
 // s, in which the highest grains of a population reach the bed.
@@ -155,7 +153,7 @@ Warnings unsettled_grains(const Case& c) {
         grains.placement.positions.empty() && !floats(c, grains))
       longest = std::max(longest, settling_time(c, grains));
   if (longest <= c.run.until) return {};
-  return {{fmt::format("The highest grains fall for about {:.2g} s, and the run ends before, at {:g} s", longest,
+  return {{fmt::format("The highest grains fall for about {:.2g} s, but the run ends before, at {:g} s", longest,
                        c.run.until),
            {{{until_change(longest)}, {}}},
            "a later run.until"}};

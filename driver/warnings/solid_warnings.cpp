@@ -115,10 +115,9 @@ std::vector<std::string> thin_solids(const Case& c) {
   std::vector<std::string> found;
   for (std::size_t n = 0; n < c.solids.size(); ++n)
     if (!c.solids[n].motion && !is_misplaced(c, c.solids[n]) && !covers_a_cell(c, c.solids[n]))
-      found.push_back(
-          fmt::format("The solid solids.{} covers the centre of no cell of {:g} m, so that the fluid does not meet it: "
-                      "consider {}.",
-                      n, c.domain.spacing, other_place(c, n)));
+      found.push_back(fmt::format(
+          "The solid solids.{} covers the centre of no cell of {:g} m, so the fluid does not meet it: consider {}.", n,
+          c.domain.spacing, other_place(c, n)));
   return found;
 }
 
@@ -151,11 +150,11 @@ std::string closed_channel(const Case& c) {
   const SolidCells cells(c);
   const double bed = c.grains.empty() ? 0.0 : settled_height(c);
   if (drives_flow(c, 0) && bed < c.domain.size.z() && !cells.opens_along_x(bed))
-    return fmt::format("{} {} the channel, so that no water passes along x{}: consider {}.", the_solids(c),
-                       verb(c, "block"), bed > 0.0 ? " above the bed" : "", remedy);
+    return fmt::format("{} {} the channel, so no water passes along x{}: consider {}.", the_solids(c), verb(c, "block"),
+                       bed > 0.0 ? " above the bed" : "", remedy);
   if (c.system == SystemKind::resolved && gravity_vector(c.gravity).z() < 0.0 && !c.grains.empty() &&
       lie_over_the_grains(c, cells))
-    return fmt::format("{} {} all of the bed, so that the flow does not reach the grains beneath: consider {}.",
+    return fmt::format("{} {} all of the bed, so the flow does not reach the grains beneath: consider {}.",
                        the_solids(c), verb(c, "cover"), remedy);
   return {};
 }

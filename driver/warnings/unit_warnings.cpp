@@ -37,10 +37,9 @@ Warnings lengths_in_millimetres(const Case& c) {
   const std::optional<double> boulders = diameter_of_boulders(c);
   if (!boulders) return {};
   const double diameter = *boulders;
-  return {
-      fmt::format("The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm are "
-                  "{:g} m.",
-                  diameter, diameter, 1e-3 * diameter)};
+  return {fmt::format(
+      "The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm is {:g} m.", diameter,
+      diameter, 1e-3 * diameter)};
 }
 
 // A liquid in SI units in cells so wide: metres of it cannot be resolved.
@@ -61,11 +60,11 @@ Warnings many_cells_in_millimetres(const Case& c) {
   if (!has_fluid(c) || !box_in_millimetres(c).empty() || cells.prod() < most_cells ||
       1e-3 * std::min(cells.x(), cells.y()) < fewest_cells_across)
     return {};
-  return {fmt::format(
-      "The box of {:g} x {:g} x {:g} m has {:.2g} cells of {:g} m, which looks like millimetres: lengths are in m, and "
-      "domain.size: {:g} mm are {:g} m.",
-      c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), cells.prod(), c.domain.spacing, c.domain.size.x(),
-      1e-3 * c.domain.size.x())};
+  return {
+      fmt::format("The box of {:g} x {:g} x {:g} m has {:.2g} cells of {:g} m, which looks like millimetres: lengths "
+                  "are in m, and domain.size: {:g} mm is {:g} m.",
+                  c.domain.size.x(), c.domain.size.y(), c.domain.size.z(), cells.prod(), c.domain.spacing,
+                  c.domain.size.x(), 1e-3 * c.domain.size.x())};
 }
 
 // unit: of length; in_a_metre: how many of them are.
@@ -80,7 +79,7 @@ Warnings gravity_in(const Case& c, const char* unit, double in_a_metre) {
                                           [=](Case& other) { other.gravity.vector = gravity / in_a_metre; })
                             : exact_change("gravity.magnitude", in_metres, 6,
                                            [](Case& other, double to) { other.gravity.magnitude = to; });
-  return {{fmt::format("Gravity of {0:g} m/s^2 looks like {0:g} {1}/s^2, which are {2:g} m/s^2", gravity.norm(), unit,
+  return {{fmt::format("Gravity of {0:g} m/s^2 looks like {0:g} {1}/s^2, which is {2:g} m/s^2", gravity.norm(), unit,
                        in_metres),
            {{{change}, {}}},
            "the value in m/s^2"}};
@@ -94,7 +93,7 @@ Warnings viscosity_in_square_millimetres(const Case& c) {
   const double viscosity = column ? c.continuum.fluid.kinematic_viscosity : c.fluid.kinematic_viscosity,
                density = column ? c.continuum.fluid.density : c.fluid.density;
   if (!(column || has_fluid(c)) || density < lightest_liquid || viscosity < thickest_fluid) return {};
-  return {{fmt::format("A kinematic viscosity of {0:g} m^2/s looks like {0:g} mm^2/s, which are {1:g} m^2/s", viscosity,
+  return {{fmt::format("A kinematic viscosity of {0:g} m^2/s looks like {0:g} mm^2/s, which is {1:g} m^2/s", viscosity,
                        1e-6 * viscosity),
            {{{exact_change("fluid.kinematic_viscosity", 1e-6 * viscosity, 6,
                            [column](Case& other, double to) {
@@ -114,7 +113,7 @@ Warnings densities_in_grams(const Case& c) {
       if (c.fluid.density < lightest_solid)
         remedy.push_back(exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
                                       [](Case& other, double to) { other.fluid.density = to; }));
-      found.push_back({fmt::format("Grains of {:g} kg/m^3 (grains.{}) look like {:g} g/cm^3, which are {:g} kg/m^3",
+      found.push_back({fmt::format("Grains of {:g} kg/m^3 (grains.{}) look like {:g} g/cm^3, which is {:g} kg/m^3",
                                    density, n, density, 1000.0 * density),
                        {{remedy, {}}}});
     }
@@ -124,13 +123,12 @@ Warnings densities_in_grams(const Case& c) {
 Warnings column_in_grams(const Case& c) {
   if (c.system != SystemKind::continuum || c.continuum.grains.density >= lightest_solid) return {};
   const double grains = c.continuum.grains.density, fluid = c.continuum.fluid.density;
-  return {
-      {fmt::format("Grains of {0:g} kg/m^3 look like {0:g} g/cm^3, which are {1:g} kg/m^3", grains, 1000.0 * grains),
-       {{{exact_change("grains.density", 1000.0 * grains, density_digits,
-                       [](Case& other, double to) { other.continuum.grains.density = to; }),
-          exact_change("fluid.density", 1000.0 * fluid, density_digits,
-                       [](Case& other, double to) { other.continuum.fluid.density = to; })},
-         {}}}}};
+  return {{fmt::format("Grains of {0:g} kg/m^3 look like {0:g} g/cm^3, which is {1:g} kg/m^3", grains, 1000.0 * grains),
+           {{{exact_change("grains.density", 1000.0 * grains, density_digits,
+                           [](Case& other, double to) { other.continuum.grains.density = to; }),
+              exact_change("fluid.density", 1000.0 * fluid, density_digits,
+                           [](Case& other, double to) { other.continuum.fluid.density = to; })},
+             {}}}}};
 }
 
 // Beside grains in kg/m^3. A gas so dense and with so little viscosity is under a pressure of tens of bars.
@@ -139,7 +137,7 @@ Warnings liquid_in_grams(const Case& c) {
       c.fluid.density > densest_gas || c.fluid.kinematic_viscosity > thinnest_gas)
     return {};
   return {{fmt::format("A fluid of {0:g} kg/m^3 with the viscosity of a liquid looks like one of {0:g} g/cm^3, which "
-                       "are {1:g} kg/m^3",
+                       "is {1:g} kg/m^3",
                        c.fluid.density, 1000.0 * c.fluid.density),
            {{{exact_change("fluid.density", 1000.0 * c.fluid.density, density_digits,
                            [](Case& other, double to) { other.fluid.density = to; })},
@@ -151,8 +149,8 @@ Warnings slope_in_degrees(const Case& c) {
   if (slope <= steepest_bed || slope > steepest_friction || !c.filled_in.flow.text.empty()) return {};
   const double tangent = std::tan(*c.gravity.slope * std::numbers::pi / 180.0);
   return {
-      {fmt::format("gravity.slope = {:g} is a bed at {:.3g} degrees, as the slope is the tangent of its angle; it "
-                   "looks like an angle in degrees",
+      {fmt::format("gravity.slope = {:g} is a bed at {:.3g} degrees, as the slope is the tangent of the angle; the "
+                   "number looks like an angle in degrees",
                    *c.gravity.slope, std::atan(slope) * 180.0 / std::numbers::pi),
        {{{exact_change("gravity.slope", tangent, 3, [](Case& other, double to) { other.gravity.slope = to; })}, {}}}}};
 }
@@ -196,7 +194,7 @@ Warnings friction_in_degrees(const Case& c) {
     if (!value || *value <= roughest_contact || *value > steepest_friction) return;
     const double tangent = std::tan(*value * std::numbers::pi / 180.0);
     found.push_back(
-        {fmt::format("{} = {:g} looks like an angle in degrees, and the coefficient is its tangent", key, *value),
+        {fmt::format("{} = {:g} looks like an angle in degrees, but the coefficient is its tangent", key, *value),
          {{{exact_change(key, tangent, 3, set)}, {}}}});
   };
   if (c.grains.empty()) return found;

@@ -227,7 +227,7 @@ void YamlDocument::apply(const std::string& override_text) {
   const std::string key_path = override_text.substr(0, equals);
   const std::string value_text = override_text.substr(equals + 1);
   if (value_text.find_first_not_of(" \t") == std::string::npos)
-    throw InputError(fmt::format("{}: the value is missing; give one, or null to take the key out.", place));
+    throw InputError(fmt::format("{}: the value is missing; give one, or null to remove the key.", place));
   YamlNode value = parsed(
       value_text, [&](const YAML::Mark&) { return place; }, place, key_path);
   const bool remove = value.kind == YamlNode::Kind::scalar && value.text.empty();  // null
@@ -248,8 +248,8 @@ void YamlDocument::apply(const std::string& override_text) {
         throw InputError(fmt::format("{}: {} is a list of {} and has no entry \"{}\"; count from 0.", place, done,
                                      node->items.size(), key));
       if (remove && last)
-        throw InputError(fmt::format(
-            "{}: an entry of a list cannot be taken out; set all of {}, or take all of it out.", place, done));
+        throw InputError(
+            fmt::format("{}: an entry of a list cannot be removed; set all of {}, or remove all of it.", place, done));
     } else {
       next = entry_of(*node, key);
       if (remove && last) erase_entry(*node, key);

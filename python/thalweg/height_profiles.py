@@ -83,7 +83,7 @@ def stresses(run):
         driving = driving_stress(run, z, fraction)
         found.append(("driving", z, driving))
         if run.case.get("fluid"):
-            found.append(("fluid: what is left of the driving", z, driving - solid))
+            found.append(("fluid: remainder of the driving stress", z, driving - solid))
     if "fluid_statistics" in run.profiles:
         fluid = run.profiles["fluid_statistics"]
         share = 1.0 - np.interp(fluid["z"], z, fraction)

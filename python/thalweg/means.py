@@ -43,7 +43,7 @@ class Steadiness(NamedTuple):
     def sentence(self):
         """The verdict with its reason, as run.log has it."""
         if self.trend == TOO_FEW:
-            return f"too short a time to tell whether it is steady, which takes {FEWEST_INDEPENDENT} independent values"
+            return f"too short a time to tell whether it is steady, which needs {FEWEST_INDEPENDENT} independent values"
         line = f"a straight line through it changes by {self.drift:+.2g} +- {self.error:.2g} over this time, which is"
         return {
             DRIFTING: f"not steady: {line} beyond chance",

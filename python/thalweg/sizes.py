@@ -71,7 +71,7 @@ class Sizes:
         load = (
             text(self.load_d50)
             if math.isfinite(self.load_d50)
-            else "not known, as nothing moves downstream on the whole"
+            else "unknown, as the net transport is not downstream"
         )
         return (
             f"d50 of the bed {text(self.bed_d50)}, of its surface {text(self.surface_d50)}, of the load {load}; armouring"

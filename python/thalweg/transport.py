@@ -30,7 +30,7 @@ class Transport(NamedTuple):
                 (
                     f"{self.symbol} = {rate.mean:.4g}{self.unit}, a single measurement, at {self.start:.4g}"
                     f" {self.second}: an error"
-                    " takes at least two"
+                    " needs at least two"
                 ),
             )
         few = "" if rate.error_holds else ": too few, the error is larger"

@@ -110,11 +110,11 @@ MODEL_FLUID = (CASES / "model_fluid/case.yaml").read_text()
 # Text of the case, changes of it, and words of the warnings or the refusal that they bring.
 VARIATIONS = [
     (GRAVEL, ["fluid.subgrid_model=none"], ["no subgrid model", "2 cells across", "too short", "too weak"]),
-    (GRAVEL, ["domain.spacing=3.3333333333e-4"], ["cells a step"]),
+    (GRAVEL, ["domain.spacing=3.3333333333e-4"], ["cells per step"]),
     (GRAVEL, ["coupling.fewest_cells_per_diameter=2", "contact.normal_stiffness=20"], ["would overlap"]),
     (GRAVEL, ["domain.size.2=0.06", "grains.0.placement.pattern=uniform"], ["pattern: random"]),
     (GRAVEL, ["domain.spacing=4.0e-3", "coupling.fewest_cells_per_diameter=0.5"], ["domain.spacing: "]),
-    (WATER, ["fluid.time_step=8.0e-5", "gravity.slope=0.03"], ["cells a step", "too weak"]),
+    (WATER, ["fluid.time_step=8.0e-5", "gravity.slope=0.03"], ["cells per step", "too weak"]),
     (WATER, ["fluid.time_step=2.0e-6"], ["has not been tested below"]),
     (WATER, ["fluid.time_step=4.0e-6", "gravity.slope=0.2"], ["has not been tested below", "slides as a whole"]),
     (WATER, ["gravity={magnitude: 9.8, slope: 0, mode: full}", "fluid.time_step=1.1e-4"], ["compresses it"]),
@@ -176,7 +176,7 @@ VARIATIONS = [
         WATER,
         ["analysis={transport_rate: {from: 40}, fluid_statistics: {from: 30}, bed_surface: {from: 31}}"],
         [
-            "The measurement analysis.transport_rate begins at 40 s, after the end of the run at 30 s, and gives nothing",
+            "The measurement analysis.transport_rate begins at 40 s, after the end of the run at 30 s, and measures nothing",
             "analysis.fluid_statistics begins at 30 s", "analysis.bed_surface begins at 31 s",
         ],
     ), (WATER, ["grains.0.density=300"], ["no heavier"]),
@@ -201,13 +201,13 @@ VARIATIONS = [
     (OIL, ["fluid.time_step=5.0e-6", "fluid.bulk_relaxation_time=1"], ["bulk relaxation time"]),
     (OIL, ["fluid.time_step=1.5e-3"], ["so large"]), (OIL, ["run.until=0.1"], ["too short"]), (WATER, CLEAR, []),
     (WATER, [*CLEAR, "fluid.time_step=1.0e-6"], ["has not been tested below"]),
-    (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells a step"]), (WATER, [*CLEAR, "run.until=1"], ["too short"]),
+    (WATER, [*CLEAR, "gravity.slope=0.1"], ["cells per step"]), (WATER, [*CLEAR, "run.until=1"], ["too short"]),
     (DRY, ["gravity.slope=0.6"], ["slides as a whole"]),
     (WATER, ["contact.friction=26"], ["an angle in degrees", "contact.friction: 0.488"]),  # tan(26 degrees)
     (WATER, ["grains.0.contact={friction: 26}"], ["grains.0.contact.friction = 26", "grains.0.contact.friction: 0.488"]),
     (WATER, ["fluid.density=1", "grains.0.density=2.65"], ["g/cm^3", "fluid.density: 1000"]),
     (WATER, ["fluid.density=1"], ["looks like one of 1 g/cm^3", "fluid.density: 1000"]),
-    (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which are 9.8", "gravity.magnitude: 9.8"]),
+    (WATER, ["gravity.magnitude=980"], ["looks like 980 cm/s^2, which is 9.8", "gravity.magnitude: 9.8"]),
     (STREAM, [], []),
     (
         STREAM, ["domain.boundaries.x_low.recycling_plane=0.002"],
@@ -218,7 +218,7 @@ VARIATIONS = [
         WATER, ["analysis={transport_rate: {from: 1}}", "output.series.every=0"],
         ["is made with the rows of the series", "analysis.transport_rate.every: 0.3"],
     ),
-    (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which are 9.81", "gravity.magnitude: 9.81"]),
+    (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which is 9.81", "gravity.magnitude: 9.81"]),
     (WATER, ["fluid.kinematic_viscosity=1"], ["looks like 1 mm^2/s", "fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),
     (
@@ -238,7 +238,7 @@ VARIATIONS = [
         [*CLEAR, "domain.size=[60, 20, 40]", "domain.spacing=0.5", "fluid.time_step=null"],
         ["looks like millimetres", "domain.spacing: 0.5 mm is 0.0005 m"],
     ),
-    (COLUMN, ["grains.diameter=5"], ["The grains are 5 m wide", "5 mm are 0.005 m"]),
+    (COLUMN, ["grains.diameter=5"], ["The grains are 5 m wide", "5 mm is 0.005 m"]),
     (COLUMN, ["grains.density=2.55", "fluid.density=1"], ["grains.density: 2550 and fluid.density: 1000"]),
     (COLUMN, ["fluid.kinematic_viscosity=1"], ["fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity.slope=1.15"], ["looks like an angle in degrees", "gravity.slope: 0.0201"]),   # tan(1.15 degrees)

@@ -142,8 +142,8 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
             stopped = self.thalweg("run", self.case, "--out", "run", "--resume", ranks=ranks)
             self.assertEqual(stopped.returncode, ASKED_TO_STOP, stopped.stderr)
             self.assertIn(
-                "run: thalweg stop was given after the last run had ended, so this one does not start; the same "
-                "command continues the run", stopped.stdout,
+                "run: thalweg stop was given after the last run had ended, so this one does not start; repeat the "
+                "command to continue the run", stopped.stdout,
             )
         self.assertIn("resuming", self.resume().stdout)
         self.assertTrue(self.summary("run")["finished"])

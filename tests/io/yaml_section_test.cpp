@@ -283,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"override_index", minimal + "wheels: [{radius: 1}]\n", "wheels.1.radius=2",
             "--set wheels.1.radius=2: wheels is a list of 1 and has no entry \"1\"; count from 0."},
         Bad{"override_takes_out_item", minimal + "wheels: [{radius: 1}]\n", "wheels.0=null",
-            "--set wheels.0=null: an entry of a list cannot be taken out; set all of wheels, or take all of it out."},
+            "--set wheels.0=null: an entry of a list cannot be removed; set all of wheels, or remove all of it."},
         Bad{"override_into_scalar", minimal, "length.x=2",
             "--set length.x=2: length = 2.5 is a single value and has no key x; set length itself."},
         Bad{"second_document", minimal + "---\n# nothing\nnonsense: 1\n", "",

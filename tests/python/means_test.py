@@ -150,7 +150,7 @@ class Steadiness(unittest.TestCase):
             thalweg.steadiness(1.0 + 0.3 * x + np.linspace(-0.5, 0.5, 600)) for x in series_worth(generator, 3, 200)
         ]
         self.assertLessEqual(sum(verdict.steady is True for verdict in found), 2)
-        self.assertIn("which takes 20 independent values", thalweg.steadiness(np.arange(10.0)).sentence())
+        self.assertIn("which needs 20 independent values", thalweg.steadiness(np.arange(10.0)).sentence())
 
     def test_a_drift_that_may_be_half_of_the_mean_is_not_excluded(self):
         # 100 independent values of variance 1 leave +- 0.35 of the drift, 0.7 with 95 %: more than half of 0.5, less

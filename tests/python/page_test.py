@@ -27,7 +27,7 @@ resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 100 s
 writing run
 warning: The step is <long>.
 t 0.5       of 1 s    50 %  left 1 s   9 steps/s  warning: 3 grains overlap
-not finished, stopped by SIGTERM: at 0.5 s; to go on, repeat the command with --resume (and without --restart)
+not finished, stopped by SIGTERM: at 0.5 s; to continue, repeat the command with --resume (and without --restart)
 Thalweg 0.1.0 (bbb): Made up
 resolved on 2 ranks, layout 2 x 1 x 1; 7 grains, 99 cells; 1e-05 s a step, 200 steps to 2 s
 resuming from run/checkpoints/step_50.h5 at 0.5 s
@@ -102,7 +102,7 @@ class Report(unittest.TestCase):
             self.assertIn(title, page.sections)
         self.assertNotIn("Where the time went", page.sections)   # no summary yet
         for words in (
-            "it is still going, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2",
+            "it is still running, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2",
             "The step is <long>.", "3 grains overlap (at 0.5 s)", "0.1.0 (aaa)", "--resume", "standard error",
         ):
             self.assertIn(words, page.text)

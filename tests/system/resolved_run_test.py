@@ -170,7 +170,7 @@ analysis:
 
     def test_check_says_how_fast_water_seeps_through_a_bed(self):
         bgk = self.run_well("check", self.case, "--set", "fluid.collision=bgk").stdout
-        self.assertIn("With bgk water seeps through a dense bed at about 0.005 of the right speed", bgk)
+        self.assertIn("With bgk, water seeps through a dense bed at about 0.005 times the right speed", bgk)
         self.assertNotIn("seeps", self.run_well("check", self.case).stdout)
 
 

@@ -43,8 +43,8 @@ output: {series: {every: 0}, checkpoint: {every: 0.02, keep: 3}}
             log = [line for line in (run / "run.log").read_text().splitlines()
                    if line.startswith("warning: At ")]   # others are of the case before it starts
             self.assertEqual(len(log), 2)
-            self.assertIn("(step 600) the share of fluid cells that move at more than 0.15 cells a step is 1,", log[0])
-            self.assertIn("(step 800) the largest velocity of the fluid in cells a step is 0.208, beyond 0.2 "
+            self.assertIn("(step 600) the share of fluid cells that move at more than 0.15 cells per step is 1,", log[0])
+            self.assertIn("(step 800) the largest velocity of the fluid in cells per step is 0.208, beyond 0.2 "
                           "(the run stops at 0.3)", log[1])
             summary = self.summary(f"run_{ranks}")
             self.assertFalse(summary["finished"])

@@ -53,7 +53,7 @@ def heading(run, sessions):
     if summary is None:
         kind = "unfinished"
         place = "" if time is None else f", at {time:.4g} {second}"
-        state = f"Not ended{place}: it is still going, has failed or was killed."
+        state = f"Not ended{place}: it is still running, has failed or was killed."
     elif summary["finished"]:
         kind, state = "finished", f"Finished at {number(summary['simulated_time'])} {second}."
     else:
@@ -276,7 +276,7 @@ def case_section(run, sessions):
         ]
     for session in sessions:
         if session.changes:
-            parts += [html.paragraph(f"Changed when it went on from {session.origin}:"), html.listing(session.changes)]
+            parts += [html.paragraph(f"Changed when it continued from {session.origin}:"), html.listing(session.changes)]
     text = (run.folder / "case.yaml").read_text(encoding="utf-8")
     return html.section("Case, as it was run", *parts, html.preformatted(text))
 

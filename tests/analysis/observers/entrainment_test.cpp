@@ -188,7 +188,7 @@ TEST(Entrainment, AMotionOlderThanTheMemoryHasNoOnset) {
   EXPECT_EQ(value_of(observer.diagnostics(), "entrainments"), 4.0);
   EXPECT_EQ(value_of(observer.results(), "entrainments_without_onset"), 4.0);
   EXPECT_EQ(value_of(observer.results(), "entrainments_with_share"), 0.0);
-  EXPECT_NE(observer.remarks().at(0).find("4 began before the memory of 0.04 s"), std::string::npos);
+  EXPECT_NE(observer.remarks().at(0).find("4 began before the recorded 0.04 s"), std::string::npos);
   const Records records = observer.take_records();
   if (rank_of(MPI_COMM_WORLD) != 0) return;
   ASSERT_EQ(records.events.size(), 4u);

@@ -172,7 +172,7 @@ TEST(TransportRate, SaysOfASingleMeasurementThatItHasNoError) {
   ASSERT_EQ(rate.remarks().size(), 1U);
   // q* = pi/6 (1/4)^3 300/200/(3/4)
   EXPECT_EQ(rate.remarks().front(),
-            "transport: q* = 0.01636, a single measurement, at 0.5 s: an error takes at least two");
+            "transport: q* = 0.01636, a single measurement, at 0.5 s: an error needs at least two");
 }
 
 // Fluxes that alternate between two values have a known mean and no drift; those that rise have one. The same state

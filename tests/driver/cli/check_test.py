@@ -51,7 +51,7 @@ class Check(ProgramTest):
                                 words=["grains.0.density", "heavy"])
             self.assert_refused(command, self.case, "--set", "grains.0.count=4000", words=["grains.0"])
             self.assert_refused(command, self.case, "--set", "run.time_step=1e-3", words=["time"])
-            self.assert_refused(command, self.case, "--set", "gravity.slope=", words=["gravity.slope=", "null to take"])
+            self.assert_refused(command, self.case, "--set", "gravity.slope=", words=["gravity.slope=", "null to remove"])
             (self.folder / "slopes.yaml").write_text("case: case.yaml\nvary: {gravity.slope: [0.1, 0.2]}\n")
             self.assert_refused(command, "slopes.yaml", words=["this is a sweep", "thalweg sweep slopes.yaml"])
         self.assert_refused("check", self.case, "--ranks", "0", words=["--ranks: 0 is not a positive number"])
@@ -104,7 +104,7 @@ class Check(ProgramTest):
         self.assertEqual(checked.returncode, 2)
         warnings = [line for line in checked.stdout.splitlines() if line.startswith("warning")]
         self.assertEqual(len(warnings), 1, checked.stdout)
-        self.assertIn("looks like millimetres: lengths are in m, and domain.size: 88 mm are 0.088 m.", warnings[0])
+        self.assertIn("looks like millimetres: lengths are in m, and domain.size: 88 mm is 0.088 m.", warnings[0])
 
 
 if __name__ == "__main__":

@@ -216,7 +216,7 @@ TEST(Warnings, OfWaterAtRestThatAnInletSetsGoing) {
   Case c = wide_bed(0.0);
   c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.2, 0.0, 0.0)};
   c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
-  EXPECT_TRUE(any_contains(warnings(c), "starts at rest and the inlet sets it going at 0.2 m/s"));
+  EXPECT_TRUE(any_contains(warnings(c), "starts at rest and the inlet accelerates it to 0.2 m/s"));
   c.initial.fluid.uniform = Vec3(0.2, 0.0, 0.0);
   EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
   c.initial.fluid.uniform.reset();

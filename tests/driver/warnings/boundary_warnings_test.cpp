@@ -37,8 +37,8 @@ TEST(BoundaryWarnings, OfNothingWhereFluidPassesFromOneEndToTheOther) {
 
 TEST(BoundaryWarnings, OfAnInletThatSucks) {
   EXPECT_TRUE(any_says(with_ends(back, "pressure_outlet"),
-                       "The velocity of the velocity_inlet domain.boundaries.x_low points out of the box, so that it "
-                       "takes fluid away: consider domain.boundaries.x_low.velocity: [0.1, 0, 0]."));
+                       "The velocity of the velocity_inlet domain.boundaries.x_low points out of the box, so it "
+                       "removes fluid: consider domain.boundaries.x_low.velocity: [0.1, 0, 0]."));
   // As much leaves at the end as comes in, so that no pressure rises; an outlet does that without a fixed velocity.
   const Case through = testing::read_text(
       channel, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
@@ -46,13 +46,12 @@ TEST(BoundaryWarnings, OfAnInletThatSucks) {
   EXPECT_TRUE(any_says(through, "consider domain.boundaries.x_high: pressure_outlet"));
   EXPECT_FALSE(any_says(through, "without limit"));
   EXPECT_TRUE(any_says(with_ends("{type: velocity_inlet, velocity: [0, 0, 0.1]}", "pressure_outlet"),
-                       "has no part into the box"));
+                       "has no component into the box"));
 }
 
 TEST(BoundaryWarnings, OfWaterThatCannotLeaveOrComeIn) {
   EXPECT_TRUE(any_says(with_ends(into, "no_slip"),
-                       "fills the box and no face lets the fluid out, so that its pressure "
-                       "rises without limit"));
+                       "fills the box and no face lets the fluid out, so its pressure rises without limit"));
   EXPECT_TRUE(any_says(with_ends(back, "no_slip"), "empties the box"));
   EXPECT_TRUE(any_says(with_ends("no_slip", "pressure_outlet"), "no face brings any in"));
 }

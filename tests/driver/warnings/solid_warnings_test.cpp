@@ -52,8 +52,8 @@ SolidCase gate(double low, double high) { return box({0.010, -0.001, low}, {0.01
 TEST(SolidWarnings, OfAGateFromFloorToLid) {
   const std::string closed = said(channel, {gate(-0.001, 0.021)});
   EXPECT_TRUE(contains(closed,
-                       "The solid solids.0 blocks the channel, so that no water passes along x: consider "
-                       "another solids.0.translate in m or solids.0.scale."))
+                       "The solid solids.0 blocks the channel, so no water passes along x: consider another "
+                       "solids.0.translate in m or solids.0.scale."))
       << closed;
   EXPECT_EQ(said(channel, {gate(-0.001, 0.019)}), "");  // one cell is open
   EXPECT_TRUE(contains(said(channel, {gate(-0.001, 0.01), gate(0.01, 0.021)}), "The solids together block"));
