@@ -29,7 +29,7 @@ constexpr const char* head_of_shape = "shape:\n";
 void refuse_other_file(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !io::read_text(path).starts_with(head_of_shape))
-    throw InputError(fmt::format("{} exists and is no shape of a grain: give another name with --out.", path));
+    throw InputError(fmt::format("{} exists and is not the shape of a grain: give another name with --out.", path));
 }
 
 std::string vector_text(const Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }

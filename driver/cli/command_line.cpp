@@ -28,17 +28,17 @@ constexpr Example examples[] = {
     {"thalweg new bed.yaml --diameter 0.005 --shields 0.05 --depth 0.03", "a case for an experiment"},
     {"thalweg check cases/quickstart/case.yaml", "what the case means and what it costs"},
     {"thalweg run cases/quickstart/case.yaml --out run/a", "run it on one core"},
-    {"thalweg run case.yaml --out run/a --resume", "begin, or go on after any interruption"},
+    {"thalweg run case.yaml --out run/a --resume", "begin, or continue after any interruption"},
     {"thalweg check case.yaml --ranks 1,16,64,256", "how long it takes on so many ranks (docs/scaling.md)"},
     {"mpirun -n 8 thalweg run case.yaml --walltime 23:50:00 --set fluid.time_step=1e-5", ""},
     {"mpirun -n 4 thalweg run case.yaml --out run/a --restart run/a --until 60", ""},
     {"thalweg info run/a", "how far it has come"},
     {"thalweg info --csv run/* > runs.csv", "the figures of many runs, one row each"},
-    {"thalweg stop run/a", "save and end; --restart goes on"},
-    {"thalweg analyze run/a --from 4", "transport, surface and profiles of what it has stored"},
+    {"thalweg stop run/a", "save and end; --resume continues"},
+    {"thalweg analyze run/a --from 4", "transport, surface and profiles from its stored output"},
     {"thalweg plot all run/a", "side view, transport rate and profiles (plot --help: more kinds)"},
     {"thalweg report run/a", "all about a run on one page"},
-    {"thalweg clump pebble.stl --spheres 20 --scale 0.001", "spheres that stand for a scanned grain"},
+    {"thalweg clump pebble.stl --spheres 20 --scale 0.001", "a clump of spheres for a scanned grain"},
     {"thalweg sweep slopes.yaml", "many runs of one case, into one table (docs/sweep.md)"},
     {"thalweg defaults > all_keys.yaml", "the keys of a case, with default and meaning"},
     {"thalweg defaults coupling.lubrication", "one section of it"}};
@@ -83,17 +83,15 @@ void add_run(CLI::App& app, Command& command, Texts& texts) {
   run->add_option("--set", command.settings, set_help)->allow_extra_args(false)->type_name("KEY.SUB=VALUE");
   run->add_option(
       "--restart", command.restart,
-      "Resume from this checkpoint file, or from the latest of this run folder, where --resume takes the latest of "
-      "--out");
+      "Resume from this checkpoint file, or from the latest of this run folder (--resume: the latest of --out)");
   run->add_option("--until", command.until, "Simulated time to stop at in s, instead of the case's run.until");
   run->add_option("--walltime", texts.walltime, "Save the state and stop before this much wall time has passed")
       ->type_name("HH:MM:SS");
   run->add_option("--layout", texts.layout, "Ranks along x, y and z (default: automatic)")->type_name("PX,PY,PZ");
   run->add_flag("--overwrite", command.overwrite, "Replace an existing run folder");
-  run->add_flag(
-         "--resume", command.resume,
-         "Resume from the latest checkpoint of --out, or start where there is none; leave a finished run as it is (for "
-         "job scripts)")
+  run->add_flag("--resume", command.resume,
+                "Resume from the latest checkpoint of --out, or start if there is none; leave a finished run as it is "
+                "(for job scripts)")
       ->excludes("--restart")
       ->excludes("--overwrite");
   run->final_callback([&] { command.kind = Command::Kind::run; });
@@ -111,7 +109,7 @@ void add_others(CLI::App& app, Command& command) {
       ->type_name("N,N,...");
   check->add_option("--until", command.until, "Simulated time at which the run is to end, in s, instead of run.until");
   check->add_flag("--solve", command.solve,
-                  "Print the keys to change so that no warning is left but those that ask for your choice");
+                  "Print changes of keys that remove every warning except those that need your decision");
   check->add_flag("--json", command.json, "Print the figures of the report, its lines and its warnings as JSON")
       ->excludes("--solve");
   check->add_option("--latency", command.network.latency, "Network latency, s")
@@ -132,7 +130,7 @@ void add_others(CLI::App& app, Command& command) {
       ->required();
   info->add_flag("--csv", command.csv,
                  "Print a table with one row per run: every number of the summaries, with its unit");
-  info->add_flag("--json", command.json, "Print all that it shows as JSON")->excludes("--csv");
+  info->add_flag("--json", command.json, "Print the same information as JSON")->excludes("--csv");
   info->final_callback([&] { command.kind = Command::Kind::info; });
   CLI::App* stop = app.add_subcommand("stop", "Ask a run to save its state and end");
   stop->add_option("RUN_FOLDER", command.path, "The run folder")->required();
@@ -148,43 +146,41 @@ void add_new(CLI::App& app, Command& command, Texts& texts) {
   const auto number = [&](const char* name, auto& value, const char* meaning) {
     add->add_option(name, value, meaning)->check(positive_number());
   };
-  number("--diameter", e.diameter, "Of the grains, m; or --sieve");
+  number("--diameter", e.diameter, "Diameter of the grains, m; or --sieve");
   add->add_option("--sieve", texts.sieve, "Grading curve: sieves in m and the share of the mass that passes each")
       ->type_name("D:P,D:P,...");
   number("--shields", e.shields_number, "Shields number; two of --shields, --slope and --depth");
   number("--slope", e.slope, "Tangent of the bed's angle");
-  number("--depth", e.depth, "Of the water above the bed, m");
-  number("--width", e.width, "Between side walls, m (default: periodic across the stream)");
-  number("--periodic-width", e.periodic_width,
-         "Of the box without side walls, m (default: what the accuracy asks for)");
-  number("--length", e.length,
-         "Of the box, which is periodic along the stream, m (default: what the accuracy asks for)");
+  number("--depth", e.depth, "Depth of the water above the bed, m");
+  number("--width", e.width, "Width between side walls, m (default: periodic across the stream)");
+  number("--periodic-width", e.periodic_width, "Width of a box without side walls, m (default: set by the accuracy)");
+  number("--length", e.length, "Length of the box, periodic along the stream, m (default: set by the accuracy)");
   number("--layers", e.layers, "Thickness of the bed in diameters");
-  number("--density", e.density, "Of the grains, kg/m^3");
-  number("--fluid-density", e.given_fluid_density, "kg/m^3 (default: 1000, water)");
-  number("--viscosity", e.viscosity, "Kinematic, m^2/s");
+  number("--density", e.density, "Density of the grains, kg/m^3");
+  number("--fluid-density", e.given_fluid_density, "Density of the fluid, kg/m^3 (default: 1000, water)");
+  number("--viscosity", e.viscosity, "Kinematic viscosity, m^2/s");
   add->add_option("--accuracy", e.accuracy, "look: 6 cells across the smallest grain, measure: 10, publish: 15")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Accuracy>{
           {"look", Accuracy::look}, {"measure", Accuracy::measure}, {"publish", Accuracy::publish}}))
       ->type_name("look|measure|publish");
-  number("--cores", e.cores, "At hand");
-  number("--hours", e.hours, "At hand; sides of the box that are not given become shorter for them");
+  number("--cores", e.cores, "Cores available");
+  number("--hours", e.hours, "Hours available; sides of the box that are not given are shortened to fit");
   add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 
 void add_clump(CLI::App& app, ClumpOrder& order) {
-  CLI::App* clump = app.add_subcommand("clump", "Make spheres that stand for the surface in an STL file");
+  CLI::App* clump = app.add_subcommand("clump", "Fit a clump of spheres to the surface in an STL file");
   clump->add_option("MESH.stl", order.surface, "The surface of one grain")->required();
   clump->add_option("--spheres", order.spheres, "At most this number of spheres")->check(positive_number());
   clump
-      ->add_option(
-          "--tolerance", order.tolerance,
-          "Mean distance of the surface from the inscribed spheres at which these suffice, in diameters of the "
-          "sphere of its volume")
+      ->add_option("--tolerance", order.tolerance,
+                   "Add spheres until the mean distance of the surface from them is no larger than this, in diameters "
+                   "of the sphere of equal volume")
       ->check(positive_number());
   clump->add_option("--scale", order.scale, "Length of one unit of the file, m (default: 1)")->check(positive_number());
-  clump->add_option("--density", order.density, "Of the grain, kg/m^3 (default: 2650)")->check(positive_number());
-  clump->add_option("--out", order.out, "OUT.yaml and OUT.png are written (default: MESH_clump, here)");
+  clump->add_option("--density", order.density, "Density of the grain, kg/m^3 (default: 2650)")
+      ->check(positive_number());
+  clump->add_option("--out", order.out, "Write OUT.yaml and OUT.png (default: MESH_clump in this folder)");
 }
 
 // Refuses option values that CLI11 accepts but that have no meaning.

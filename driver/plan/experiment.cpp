@@ -47,7 +47,7 @@ void refuse_other_units(const Experiment& e) {
   const GrainSizes sizes = sizes_of(e);
   const char* size = e.diameter ? "--diameter" : "--sieve";
   if (sizes.median > largest_cobble)
-    refuse(fmt::format("{} is in m, and grains of {:.3g} m look like millimetres: {:.3g} mm are {:.3g} m.", size,
+    refuse(fmt::format("{} is in m, and grains of {:.3g} m look like millimetres: {:.3g} mm is {:.3g} m.", size,
                        sizes.median, sizes.median, 1e-3 * sizes.median));
   refuse_length_in_millimetres("--depth", e.depth, sizes.median);
   refuse_length_in_millimetres("--width", e.width, sizes.median);
@@ -63,7 +63,7 @@ void refuse_other_units(const Experiment& e) {
                     e.fluid_density(), 1e3 * e.fluid_density()));
   if (!e.given_fluid_density && e.viscosity > 0.5 * water && e.viscosity < 2.0 * water)
     refuse(
-        fmt::format("--viscosity is the kinematic one in m^2/s, and {0:g} looks like that of water in Pa s: give "
+        fmt::format("--viscosity is the kinematic viscosity in m^2/s, and {0:g} looks like that of water in Pa s: give "
                     "--viscosity {1:g}, or for a fluid so viscous its --fluid-density, too.",
                     e.viscosity, e.viscosity / e.fluid_density()));
   if (e.slope && *e.slope > steepest_bed)
@@ -72,8 +72,9 @@ void refuse_other_units(const Experiment& e) {
         "give --slope {:.3g}.",
         *e.slope, std::atan(*e.slope) * 180.0 / std::numbers::pi, std::tan(*e.slope * std::numbers::pi / 180.0)));
   if (e.layers < thinnest_bed)
-    refuse(fmt::format("--layers is the thickness of the bed in diameters, and {:g} is no layer: give --layers {:g}.",
-                       e.layers, std::max(1.0, std::round(e.layers / sizes.median))));
+    refuse(fmt::format(
+        "--layers is the thickness of the bed in diameters, and {:g} is less than one layer: give --layers {:g}.",
+        e.layers, std::max(1.0, std::round(e.layers / sizes.median))));
 }
 
 // Boxes that cannot hold the grains, or no flow over them.
@@ -129,9 +130,8 @@ GrainSizes sizes_of(const Experiment& experiment) {
 
 std::vector<SievePoint> parse_sieve(const std::string& text) {
   const InputError wrong(
-      fmt::format("--sieve {} is no grading curve: write sieves in m and the share of the mass that passes each, "
-                  "rising from 0 to 1, "
-                  "for example 0.002:0,0.004:0.5,0.008:1.",
+      fmt::format("--sieve {} is not a grading curve: write sieves in m and the share of the mass that passes each, "
+                  "rising from 0 to 1, for example 0.002:0,0.004:0.5,0.008:1.",
                   text));
   std::vector<SievePoint> points;
   std::istringstream stream(text);

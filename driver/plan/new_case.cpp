@@ -117,8 +117,7 @@ std::string yaml_of(const Experiment& experiment, const Draft& draft) {
                       experiment.fluid_density(), experiment.viscosity, extra_of(draft, "fluid"));
   text += fmt::format("gravity: {{magnitude: {:g}{}}}   # m/s^2\n", experiment.gravity,
                       experiment.slope ? fmt::format(", slope: {:g}", *experiment.slope) : std::string());
-  text += "flow: " + flow_text(experiment) +
-          "   # of the bed that the grains make; check prints the slope and the height\n";
+  text += "flow: " + flow_text(experiment) + "   # over the settled bed; check prints the slope and the height\n";
   text += fmt::format(
       "grains:\n  - fill: {{layers: {:g}}}   # diameters of settled bed\n{}    density: {:g}   # kg/m^3\n"
       "    # All of the floor, and as high as they need: with another domain.size, change the first two numbers, too.\n"
@@ -164,7 +163,7 @@ void plan_time(const Case& c, const Experiment& experiment, Draft& draft) {
 }
 
 constexpr const char* no_case =
-    "no spacing, step and contacts suit this experiment without a warning: take less extreme numbers.";
+    "no spacing, step and contacts fit this experiment without a warning: give less extreme numbers.";
 
 // What to say where the bed would slide as a whole. change: of the key that the case of the experiment has.
 std::string too_steep(const Experiment& experiment, const Change& change) {
@@ -189,9 +188,8 @@ void refuse_low_box(const Experiment& experiment, const Draft& draft) {
   const double needed = packed_height(experiment, draft, median) - bed;
   if (needed < depth_of(experiment) - draft.spacing) return;
   throw InputError(fmt::format(
-      "{:g} layers of grains are placed up to {:.2g} m above the bed that they settle to, higher than {:.2g} m of "
-      "water "
-      "reach: give {}, or fewer --layers.",
+      "{:g} layers of grains are placed up to {:.2g} m above the bed that they settle to, and so above the surface of "
+      "{:.2g} m of water: give {}, or fewer --layers.",
       experiment.layers, needed, depth_of(experiment),
       experiment.depth ? fmt::format("--depth {:.2g} or more", 1.05 * (needed + draft.spacing)) : "a smaller --slope"));
 }

@@ -23,15 +23,15 @@ except ModuleNotFoundError as missing:
 def add_analyze_to(commands):
     parser = commands.add_parser(
         "analyze",
-        description="Transport, surface, Shields number and profiles of a run between two times, from what it "
-        "has stored. A run that is still going can be looked at, too.",
+        description="Transport, surface, Shields number and profiles of a run between two times, from its "
+        "stored output. The run may still be in progress.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="Run folder")
     parser.add_argument("--from", dest="start", type=float, metavar="SECONDS",
-                        help="Begin of the averages (default: analysis.transport_rate.from, or half of the run)")
-    parser.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Their end (default: of the run)")
+                        help="Start of the averages (default: analysis.transport_rate.from, or half of the run)")
+    parser.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="End of the averages (default: end of the run)")
     parser.add_argument("--out", type=Path, metavar="FOLDER",
-                        help="Where summary.json and the tables go (default: analysis in the run folder)")
+                        help="Folder for summary.json and the tables (default: analysis in the run folder)")
 
 
 def parser_of_commands():

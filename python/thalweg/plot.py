@@ -37,8 +37,8 @@ def refuse_one_name(wanted):
     """The figures of several runs would have the same name."""
     if wanted.out and len(wanted.runs) > 1:
         raise RunFolderError(
-            f"--out {wanted.out}: each of {len(wanted.runs)} runs has a figure of its own; give one run, or leave --out"
-            " away, and they go into the folders of the runs."
+            f"--out {wanted.out}: each of {len(wanted.runs)} runs has a figure of its own; give one run, or leave out"
+            " --out to write them to the folders of the runs."
         )
 
 
@@ -151,8 +151,8 @@ def draw_picture(wanted):
 
 
 def add_window(parser):
-    parser.add_argument("--from", dest="start", type=float, metavar="SECONDS", help="Begin of the time that counts")
-    parser.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="Its end")
+    parser.add_argument("--from", dest="start", type=float, metavar="SECONDS", help="Start of the time window")
+    parser.add_argument("--until", dest="stop", type=float, metavar="SECONDS", help="End of the time window")
 
 
 def add_time(parser):
@@ -177,7 +177,7 @@ def add_kind(kinds, name, draw, text, of_one=False, several=False):
         )
     elif name == "all":
         kind.add_argument(
-            "--out", type=Path, metavar="FOLDER", help="Where the figures of one run go (default: the run folder)"
+            "--out", type=Path, metavar="FOLDER", help="Folder for the figures of one run (default: the run folder)"
         )
     elif not of_one:
         kind.add_argument("--out", type=Path, metavar="FILE", help="The figure of one run (default: in the run folder)")
@@ -187,15 +187,15 @@ def add_kind(kinds, name, draw, text, of_one=False, several=False):
 def add_to(commands):
     plot = commands.add_parser(
         "plot",
-        description="Figures of runs, finished or still going. thalweg plot KIND --help says what each "
-        "kind has to choose.",
+        description="Figures of runs, finished or in progress. thalweg plot KIND --help shows the "
+        "options of each kind.",
     )
     kinds = plot.add_subparsers(dest="kind", required=True, metavar="KIND", title="kinds")
     add_time(add_kind(kinds, "all", draw_all, "Side view, transport rate and profiles, as far as a run has them"))
     add_time(
         add_kind(
             kinds, "side", draw_side_view,
-            "Side view of the grains in front of the flow (bed.png), of a fluid alone flow.png",
+            "Side view of the grains in front of the flow (bed.png), or without grains of the flow (flow.png)",
         )
     )
     add_kind(
@@ -216,9 +216,9 @@ def add_to(commands):
     )
     add_window(relation)
     relation.add_argument("--surface", choices=("fraction", "static"), default="fraction",
-                          help="Of the bed: half its solid fraction, or the static pixels of Zhang et al.")
+                          help="Bed surface: at half the solid fraction, or by the static pixels of Zhang et al.")
     relation.add_argument(
-        "--table", metavar="FILE", help="Table of the points, brought up to date; all that it has are drawn"
+        "--table", metavar="FILE", help="Table of the points, which is updated; all its points are drawn"
     )
     visible = add_kind(
         kinds, "visible", draw_visible, "Profiles of the grains that a camera sees beside the flume",
@@ -226,7 +226,7 @@ def add_to(commands):
     )
     add_window(visible)
     visible.add_argument(
-        "--frames", type=int, default=50, metavar="N", help="How many frames count at most (default: %(default)s)"
+        "--frames", type=int, default=50, metavar="N", help="Largest number of frames (default: %(default)s)"
     )
     phases = add_kind(
         kinds, "two_phases", draw_two_phases, "A resolved bed beside the two-phase continuum", of_one=True,
@@ -245,7 +245,7 @@ def add_to(commands):
         help="Direction from which to look at the middle of the box",
     )
     picture.add_argument(
-        "--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="In pixels"
+        "--size", type=int, nargs=2, default=(1400, 1000), metavar=("WIDTH", "HEIGHT"), help="Size in pixels"
     )
 
 
@@ -255,9 +255,9 @@ def add_film(film):
         help="A .gif, an .mp4 (where ffmpeg is installed) or a folder of images (default: film.gif in the run folder)",
     )
     add_window(film)
-    film.add_argument("--every", type=float, default=0.0, metavar="SECONDS", help="Between frames (default: all)")
+    film.add_argument("--every", type=float, default=0.0, metavar="SECONDS", help="Time between frames (default: all frames)")
     film.add_argument("--rate", type=float, default=20.0, metavar="N", help="Images a second (default: %(default)g)")
-    film.add_argument("--width", type=int, default=900, metavar="PIXELS", help="Of the images (default: %(default)s)")
+    film.add_argument("--width", type=int, default=900, metavar="PIXELS", help="Width of the images (default: %(default)s)")
 
 
 def plot(wanted):

@@ -109,7 +109,7 @@ class NewCase(ProgramTest):
             (["--diameter", 0.005, "--depth", 0.03], "two of --shields, --slope and --depth"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--slope", 0.1], "two of"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--density", 900], "make no bed"),
-            (["--sieve", "1:2:3", "--shields", 0.05, "--depth", 0.03], "is no grading curve"),
+            (["--sieve", "1:2:3", "--shields", 0.05, "--depth", 0.03], "is not a grading curve"),
             (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "no slope gives --shields 5"),
             (["--diameter", 0.005, "--shields", 0.5, "--depth", 0.01], "would slide as a whole: give --shields 0."),
             (["--diameter", 0.005, "--slope", 0.5, "--depth", 0.03], "would slide as a whole: give --slope 0."),
@@ -135,8 +135,8 @@ class NewCase(ProgramTest):
 
     def test_numbers_in_other_units_are_refused(self):
         for words, reason in [
-            (["--diameter", 5, "--shields", 0.05, "--depth", 30], "5 mm are 0.005 m"),
-            (["--diameter", 0.5, "--shields", 0.05, "--depth", 0.03], "0.5 mm are 0.0005 m"),
+            (["--diameter", 5, "--shields", 0.05, "--depth", 30], "5 mm is 0.005 m"),
+            (["--diameter", 0.5, "--shields", 0.05, "--depth", 0.03], "0.5 mm is 0.0005 m"),
             (["--sieve", "2:0,4:0.5,8:1", "--shields", 0.05, "--depth", 0.03], "--sieve is in m"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 40], "give --depth 0.04"),
             ([*EXPERIMENT, "--width", 10], "give --width 0.01"),

@@ -129,7 +129,7 @@ class Sweep(ProgramTest):
         os.kill(going.pid, signal.SIGTERM)
         said, _ = going.communicate(timeout=60)
         self.assertEqual(going.returncode, 3)   # as thalweg run says
-        self.assertIn("the same command goes on", said)
+        self.assertIn("the same command resumes the sweep", said)
         self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["begun", "waiting", "waiting"])
         self.assertTrue((self.folder / "sweep/runs/slope_0.5/checkpoints/latest").exists())
 

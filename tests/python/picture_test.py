@@ -87,7 +87,7 @@ class Picture(unittest.TestCase):
     def test_what_cannot_be_drawn_is_refused(self):
         (self.folder / "taken.png").mkdir()
         for options, words in (
-            (("--view", "0", "0", "0"), "no direction"), (("--view", "nan", "0", "1"), "no direction"),
+            (("--view", "0", "0", "0"), "not a direction"), (("--view", "nan", "0", "1"), "not a direction"),
             (("--size", "0", "0"), "from 1 to"), (("--size", "100000", "100000"), "from 1 to"),
             (("--out", self.folder / "picture.jpg"), "is a .png"),
             (("--out", self.folder / "taken.png"), "taken.png: Is a directory"),

@@ -154,12 +154,12 @@ class Points(Folder):
             ({"vary": {"a": {"from": 1, "to": "x"}}}, "a.to: x is not a number"),
             ({"vary": {"a": [1]}, "set": {"a": 2}}, "a is given twice"), ({"ranks": 0}, "ranks: 0"),
             ({"bisect": {"key": "a"}}, "bisect.from is missing"),
-            ({"bisect": BISECT | {"from": 2}}, "no range to search"),
+            ({"bisect": BISECT | {"from": 2}}, "not a range to search"),
             ({"bisect": BISECT | {"width": 0}}, "width above 0"), ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
             ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
             ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also"),
             ({"bisect": BISECT | {"repeat": {"a": [1]}}, "vary": {"a": [1, 2]}}, "bisect.repeat: a is also"),
-            ({"bisect": BISECT | {"repeat": {"gravity.slope": [1]}}}, "is what is searched"),
+            ({"bisect": BISECT | {"repeat": {"gravity.slope": [1]}}}, "is the key that is searched"),
             ({"bisect": BISECT | {"holds": "q > 1e"}}, "1e is not a number"),
             ({"bisect": "slope"}, "bisect: give keys"), ({"together": 5}, "together: give a list"),
             ({"columns": "simulated_time"}, "columns: give a list"), ({"case": 5}, "case is missing"),
@@ -214,7 +214,7 @@ class Bisection(Folder):
         plan = self.plan(bisect=BISECT, together=[{"a": 1, "bisect.from": 0.4, "bisect.to": 0.6}, {"a": 2}])
         self.assertEqual(plan.points, [{"a": 1}, {"a": 2}])
         self.assertEqual([(search.lower, search.upper) for search in plan.bisections], [(0.4, 0.6), (0.0, 1.0)])
-        with self.assertRaisesRegex(SweepError, "take a section bisect"):
+        with self.assertRaisesRegex(SweepError, "need a section bisect"):
             self.plan(together=[{"a": 1, "bisect.from": 0.4}])
 
     def test_a_figure_compared_with_another(self):

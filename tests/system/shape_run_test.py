@@ -140,7 +140,7 @@ output: {checkpoint: {every: 0.01}}
         self.thalweg("clump", "prolate.stl", "--spheres", "4", "--scale", str(DIAMETER))   # replaces its own
         self.assertEqual((self.folder / "prolate_clump.yaml").read_text().count("diameter"), 4)
         self.assert_refused("clump", "prolate.stl", "--spheres", "4", "--scale", str(DIAMETER), "--out", "case",
-                            words=["case.yaml exists and is no shape"])
+                            words=["case.yaml exists and is not the shape"])
 
     def test_what_cannot_be_is_refused(self):
         (self.folder / "cut.stl").write_bytes((self.folder / "pebble.stl").read_bytes()[:-100])

@@ -256,14 +256,14 @@ def draw(run, path, time, direction, pixels):
     and height."""
     if not 0.0 < np.linalg.norm(direction) < np.inf:
         raise RunFolderError(
-            f"--view {' '.join(f'{n:g}' for n in direction)}: this is no direction; give three numbers, not all zero."
+            f"--view {' '.join(f'{n:g}' for n in direction)}: this is not a direction; give three numbers, not all zero."
         )
     if not all(0 < count <= MOST_PIXELS for count in pixels):
         raise RunFolderError(
             f"--size {pixels[0]} {pixels[1]}: give a width and a height from 1 to {MOST_PIXELS} pixels."
         )
     if path.suffix.lower() != ".png":
-        raise RunFolderError(f"--out {path}: a picture is a .png; give a name that ends so.")
+        raise RunFolderError(f"--out {path}: a picture is a .png; give a name with this ending.")
     grains, fluid = pictured(run, time)
     path.parent.mkdir(parents=True, exist_ok=True)
     with display():

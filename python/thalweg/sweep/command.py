@@ -25,22 +25,22 @@ def add_to(commands):
         "sweep",
         description=(
             "Run a case with many values of its keys, as many runs at a time as there are cores and memory for. The"
-            " same command goes on where it was stopped or killed; finished runs are not repeated."
+            " same command resumes a sweep that was stopped or killed; finished runs are not repeated."
         ),
     )
-    sweep.add_argument("sweep", type=Path, metavar="SWEEP.yaml", help="Which runs there are (docs/sweep.md)")
+    sweep.add_argument("sweep", type=Path, metavar="SWEEP.yaml", help="Sweep file (docs/sweep.md)")
     sweep.add_argument("--out", type=Path, metavar="FOLDER",
-                       help="Where runs and tables go (default: named after the file, beside it)")
+                       help="Folder for runs and tables (default: named after the file, beside it)")
     sweep.add_argument(
-        "--jobs", type=int, metavar="N", help="Runs at a time (default: a core a rank, as far as the memory goes)"
+        "--jobs", type=int, metavar="N", help="Runs at a time (default: one core per rank, as memory allows)"
     )
-    sweep.add_argument("--retry", action="store_true", help="Run those again that have failed")
+    sweep.add_argument("--retry", action="store_true", help="Run failed runs again")
     sweep.add_argument(
         "--dry-run", action="store_true",
-        help="Print the runs, or the bisections, and what thalweg check warns of, and stop",
+        help="Print the runs, or the bisections, with the warnings of thalweg check, and stop",
     )
-    sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, from 0 on")
-    sweep.add_argument("--tables", action="store_true", help="Only write the tables of what there is")
+    sweep.add_argument("--task", type=int, metavar="N", help="Only run (or bisection) N of the dry run, counted from 0")
+    sweep.add_argument("--tables", action="store_true", help="Only write the tables of the existing runs")
     sweep.add_argument(
         "--slurm", action="store_true", help="Print a Slurm array job with a task for each run or bisection"
     )
@@ -155,7 +155,7 @@ def sweep(wanted):
     finished = runner.work()
     code = written(plan, tasks, units, folder) if wanted.task is None else 0
     if not finished:
-        print("stopped; the same command goes on")
+        print("stopped; the same command resumes the sweep")
         return STOPPED
     return code or int(any(run.state == FAILED for task in tasks for run in task.runs))
 

@@ -55,7 +55,7 @@ def content_of(case, _state):
     except yaml.YAMLError as error:
         raise SweepError(f"{case} is not YAML: {' '.join(str(error).split())}.") from None
     if not isinstance(content, dict):
-        raise SweepError(f"{case} is no case: it has no keys.")
+        raise SweepError(f"{case} is not a case: it has no keys.")
     return content
 
 

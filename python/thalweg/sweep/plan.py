@@ -215,7 +215,7 @@ def bisections_of(content, points):
     ]
     if not content.get("bisect"):
         if any(ranges):
-            raise SweepError("bisect.from and bisect.to of a run take a section bisect, which says what is searched.")
+            raise SweepError("bisect.from and bisect.to of a run need a section bisect that says what is searched.")
         return []
     bisections = [bisection_of(section(content, "bisect") | own) for own in ranges]
     taken = bisections[0].key
@@ -224,7 +224,7 @@ def bisections_of(content, points):
         if any(key in point for point in points):
             raise SweepError(f"bisect.{name}: {key} is also in set, vary or together; give it in one place.")
     if taken in repeated:
-        raise SweepError(f"bisect.repeat: {taken} is what is searched; repeat runs with other values of another key.")
+        raise SweepError(f"bisect.repeat: {taken} is the key that is searched; repeat runs with other values of another key.")
     return bisections
 
 
@@ -237,7 +237,7 @@ def bisection_of(given):
         ("from", given["from"]), ("to", given["to"]), ("width", given["width"]), ("share", given.get("share", 0.5))))
     geometric = spacing_is_log("bisect.spacing", given.get("spacing", "linear"))
     if not lower < upper or (geometric and lower <= 0.0):
-        raise SweepError(f"bisect: from {lower:g} to {upper:g} is no range to search; give from below to"
+        raise SweepError(f"bisect: from {lower:g} to {upper:g} is not a range to search; give from below to"
                          + (", both above 0 for spacing: log." if geometric else "."))
     if width <= 0.0 or not 0.0 <= share < 1.0:
         raise SweepError("bisect: give a width above 0, and a share of the repetitions from 0 on and below 1.")

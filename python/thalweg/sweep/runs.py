@@ -123,7 +123,7 @@ class SweepRun:
         if inputs_of(self.case, self.settings) != self.inputs:
             raise SweepError(
                 f"{self.case}, or a file that it names, has been changed since this sweep began, which has results of "
-                "the old one. Change it back and start the same command again, or give another --out."
+                "the old one. Change it back and repeat the command, or give another --out."
             )
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # Several runs beside each other must not all be bound to the first core.
