@@ -60,16 +60,14 @@ private:
 // Above the floor, the lowest bed there is.
 void check_heights(const AboveBedKeys& above_bed, const RegionKeys& region, double diameter) {
   if (above_bed.upper < 0.5 * diameter)
-    throw KeyError("above_bed.upper",
-                   fmt::format("it is of the centre, and so low a grain of {:.4g} m touches the bed; give at least its "
-                               "radius, {:.4g} m",
-                               diameter, 0.5 * diameter));
-  if (above_bed.lower > region.upper.z())
     throw KeyError(
-        "above_bed.lower",
-        fmt::format("however low the bed is, that is above the region, which ends at {:g} m; give less, or a "
-                    "higher region.upper",
-                    region.upper.z()));
+        "above_bed.upper",
+        fmt::format("with its centre so low a grain of {:.4g} m touches the bed; give at least its radius, {:.4g} m",
+                    diameter, 0.5 * diameter));
+  if (above_bed.lower > region.upper.z())
+    throw KeyError("above_bed.lower", fmt::format("however low the bed, this is above the region, which ends at {:g} "
+                                                  "m; give a smaller height, or a higher region.upper",
+                                                  region.upper.z()));
 }
 
 }  // namespace
@@ -78,14 +76,13 @@ void check(const SupplyKeys& supply, std::span<const Population> populations, co
   const auto count = static_cast<std::int64_t>(populations.size());
   if (supply.population >= count)
     throw KeyError("population", count == 0
-                                     ? std::string("there are no grains that those supplied could be like; give the "
-                                                   "section grains with one population at least")
+                                     ? std::string("supplied grains are like those of a population, and there is none; "
+                                                   "give the section grains at least one")
                                      : fmt::format("there is no such population; give one of 0 to {}", count - 1));
   const Population& population = populations[static_cast<std::size_t>(supply.population)];
   if (population.held() || population.prescribed_angular_velocity)  // a supply's grains are free in all ways
     throw KeyError("population",
-                   "its grains are held or move as prescribed; give the number of one whose grains are "
-                   "free");
+                   "its grains are held or move as prescribed; give the number of a population whose grains are free");
   if (population.from_file() && population.clumps.count > 0)
     throw KeyError("population",
                    "its clumps are from a file and have no common shape; give the number of a population "

@@ -23,9 +23,10 @@ void describe(SectionVisitor& visit, GrainPhaseKeys& grains) {
 
 void describe(SectionVisitor& visit, HeightKeys& height) {
   visit.real("shields_number", height.shields_number,
-             {.meaning = "of the water over the bed at the start: gives its depth", .above = 0.0, .example = 0.085});
-  visit.real("depth", height.depth,
-             {.unit = "m", .meaning = "in its place: of the water over the bed", .above = 0.0, .example = 0.04});
+             {.meaning = "of the water over the bed at the start; gives the depth", .above = 0.0, .example = 0.085});
+  visit.real(
+      "depth", height.depth,
+      {.unit = "m", .meaning = "of the water over the bed, in place of shields_number", .above = 0.0, .example = 0.04});
   visit.require(height.shields_number || height.depth, "shields_number",
                 "the depth is missing; give shields_number, for example 0.085, or depth in m");
   visit.require(!height.shields_number || !height.depth, "depth",
@@ -33,7 +34,7 @@ void describe(SectionVisitor& visit, HeightKeys& height) {
   visit.real("bed", height.bed,
              {.unit = "diameters", .meaning = "thickness of the bed, as dense as it can be at rest", .at_least = 2.0});
   visit.integer("cells_per_diameter", height.cells_per_diameter,
-                {.meaning = "wanted; a whole number of cells fills the water", .at_least = 2});
+                {.meaning = "target; adjusted to fill the water with whole cells", .at_least = 2});
   visit.choice("start", height.start, {.meaning = "state at the start"});
 }
 
@@ -49,7 +50,7 @@ static void describe_rheology(SectionVisitor& visit, Rheology& r) {
   visit.real("elastic_modulus", r.elastic_modulus,
              {.unit = "Pa", .meaning = "pressure of grains at rest over phi - phi_m", .above = 0.0});
   visit.real("smallest_gap", r.smallest_gap,
-             {.meaning = "phi_m - phi is no smaller in the pressure of flow", .above = 0.0, .below = 0.1});
+             {.meaning = "lower limit of phi_m - phi in the pressure of flowing grains", .above = 0.0, .below = 0.1});
   visit.real("creeping_rate", r.creeping_rate,
              {.unit = "1/s", .meaning = "shear rate below which friction falls to zero", .above = 0.0});
 }
@@ -58,7 +59,7 @@ static void describe_turbulence(SectionVisitor& visit, Turbulence& t) {
   visit.real("mixing_length_factor", t.mixing_length_factor,
              {.meaning = "of l_m = factor d (phi_m - phi)^3", .above = 0.0});
   visit.real("smallest_mixing_length", t.smallest_mixing_length,
-             {.unit = "diameters", .meaning = "floor of l_m; 0: none", .at_least = 0.0});
+             {.unit = "diameters", .meaning = "lower limit of l_m; 0: none", .at_least = 0.0});
   visit.real("schmidt_number", t.schmidt_number, {.meaning = "Sigma_s of the drift", .above = 0.0});
   visit.choice("strain_norm", t.strain_norm, {.meaning = "norm of the rate of strain in the eddy viscosity"});
 }
@@ -127,11 +128,12 @@ void refuse_too_many_cells(const ContinuumKeys& keys, double depth) {
   if (fewest_per_diameter * keys.column.bed > most_cells)
     throw KeyError("column.bed", "the column would have more than 100000 cells; give a thinner bed, in diameters");
   if (fewest_per_diameter * depth > most_cells * keys.grains.diameter)
-    throw KeyError(depth_key, "the column would have more than 100000 cells; give less, for shallower water");
+    throw KeyError(depth_key,
+                   "the column would have more than 100000 cells; give a smaller value, for shallower water");
   if (cells.water == fewest_in_water)
     throw KeyError(depth_key,
-                   "four cells fill the water, and the bed would have more than 100000 of that height; give "
-                   "more, for deeper water");
+                   "four cells fill the water, and the bed would have more than 100000 of that height; give a larger "
+                   "value, for deeper water");
   throw KeyError("column.cells_per_diameter", "the column would have more than 100000 cells; give fewer");
 }
 

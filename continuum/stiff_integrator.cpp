@@ -140,7 +140,7 @@ void StiffIntegrator::advance(std::span<double> unknowns, double duration) {
     const std::string reason = name;
     std::free(name);
     throw RunError(
-        fmt::format("The equations of the column cannot be carried on: CVODE stopped with {} after {} steps, "
+        fmt::format("The equations of the column cannot be integrated further: CVODE stopped with {} after {} steps, "
                     "{:.3g} s into an interval of {:.3g} s.",
                     reason, taken, reached, duration));
   }

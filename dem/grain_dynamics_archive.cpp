@@ -169,8 +169,8 @@ void GrainDynamics::take(ArchiveReader& archive, const std::string& group, bool 
     throw InputError(fmt::format("There are {} grains, but this system has {}.", saved, global_count_));
   if (archive.has(group + "/id"))
     throw InputError(
-        "Grains have come into the other run or left it, so that theirs are not those of this case any more; take the "
-        "bed.h5 that it has left, as placement.file of a population.");
+        "Grains have entered or left the other run, so they are no longer those of this case; give the bed.h5 that it "
+        "has written as placement.file of a population.");
   if (assemblies_.any())
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
   restore(archive, group, with_columns ? Restored::start : Restored::start_without_columns);

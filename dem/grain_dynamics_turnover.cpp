@@ -126,8 +126,8 @@ void GrainDynamics::exchange_bodies(std::span<const char> leaves, std::span<cons
   const std::int64_t here = sum_over_ranks(communicator_, static_cast<std::int64_t>(store_.owned));
   if (here != global_count_)
     throw RunError(
-        fmt::format("There are {} grains and members of clumps in the box, but {} by the balance of supplies "
-                    "and sinks; this is a fault of the program.",
+        fmt::format("There are {} grains and members of clumps in the box, but {} by the balance of supplies and "
+                    "sinks; this is an error in the program.",
                     here, global_count_));
 }
 
@@ -236,10 +236,10 @@ static void check_rates(ArchiveReader& archive, const std::string& group, const 
     if (!archive.has(name)) continue;  // older checkpoints have none
     const double saved = archive.real_attribute(name), now = supplies[n].rate;
     if (!same_but_for_rounding(saved, now))
-      throw InputError(
-          fmt::format("Supply {0} brings {1:.4g} {3} now, and has brought {2:.4g} {3} so far. A transport rate goes by "
-                      "the reference grain, the density of the fluid and gravity; set these back, or begin a new run.",
-                      n, now, saved, supplies[n].by_mass ? "kg/s" : "grains/s"));
+      throw InputError(fmt::format(
+          "Supply {0} brings {1:.4g} {3} now, and has brought {2:.4g} {3} so far. A transport rate depends on the "
+          "reference grain, the density of the fluid and gravity; set these back, or begin a new run.",
+          n, now, saved, supplies[n].by_mass ? "kg/s" : "grains/s"));
   }
 }
 

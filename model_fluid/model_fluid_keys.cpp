@@ -28,25 +28,26 @@ ShieldsRampParameters ramp_parameters(const ShieldsRampKeys& ramp, const GrainSc
 }  // namespace
 
 void describe(SectionVisitor& visit, ShieldsRampKeys& ramp) {
-  visit.real("step", ramp.step, {.meaning = "of the Shields number, relative", .above = 0.0, .at_most = 1.0});
-  visit.real("every", ramp.every,
-             {.unit = "s", .meaning = "at least, between two steps", .required = true, .above = 0.0, .example = 5.0});
+  visit.real("step", ramp.step, {.meaning = "relative step of the Shields number", .above = 0.0, .at_most = 1.0});
+  visit.real(
+      "every", ramp.every,
+      {.unit = "s", .meaning = "shortest time between two steps", .required = true, .above = 0.0, .example = 5.0});
   visit.real("hold", ramp.hold,
              {.unit = "s",
-              .meaning = "motion that lasts longer counts as one without end, and the run is finished",
+              .meaning = "motion that lasts longer counts as endless and finishes the run",
               .required = true,
               .above = 0.0,
               .example = 1000.0});
   visit.require(ramp.hold > ramp.every, "hold", "it must be longer than `every`; give for example 100 times as much");
-  visit.real(
-      "mobile_share", ramp.mobile_share,
-      {.meaning = "of the grains: if more of them are faster than sqrt(g'D), their motion counts as one without end "
-                  "at once; 1: only `hold` counts",
-       .above = 0.0,
-       .at_most = 1.0});
-  visit.real("largest_speed", ramp.largest_speed, {.unit = "v_0", .meaning = "grains that are slower", .above = 0.0});
+  visit.real("mobile_share", ramp.mobile_share,
+             {.meaning = "if a larger share of the grains is faster than sqrt(g'D), their motion counts as endless at "
+                         "once; 1: only `hold` counts",
+              .above = 0.0,
+              .at_most = 1.0});
+  visit.real("largest_speed", ramp.largest_speed,
+             {.unit = "v_0", .meaning = "largest speed of a grain at rest", .above = 0.0});
   visit.real("largest_acceleration", ramp.largest_acceleration,
-             {.unit = "g'", .meaning = "and accelerated by less are at rest", .above = 0.0});
+             {.unit = "g'", .meaning = "largest acceleration of a grain at rest", .above = 0.0});
 }
 
 ModelFluidNumbers ModelFluidKeys::numbers() const {
@@ -66,9 +67,9 @@ void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks) {
               .above = 0.0,
               .example = 1.0});
   visit.real("shear_reynolds_number", fluid.shear_reynolds_number,
-             {.meaning = "in its place: u_* D/nu, six times as large", .above = 0.0, .example = 6.0});
+             {.meaning = "u_* D/nu, in place of reynolds_number and six times as large", .above = 0.0, .example = 6.0});
   visit.require(fluid.reynolds_number || fluid.shear_reynolds_number, "reynolds_number",
-                "it is missing; give reynolds_number, as printed, or shear_reynolds_number");
+                "the Reynolds number is missing; give reynolds_number, as printed, or shear_reynolds_number");
   visit.require(!fluid.reynolds_number || !fluid.shear_reynolds_number, "shear_reynolds_number",
                 "the Reynolds number is given twice; remove this key or reynolds_number");
   visit.choice<ModelDrag>(
@@ -98,20 +99,20 @@ void describe(SectionVisitor& visit, ModelFluidKeys& fluid, bool disks) {
               .only_if = {!disks, "the velocity of the fluid among disks has no zero; remove it"}});
   visit.require(disks || fluid.densest_fraction > fluid.top_fraction.value_or(VelocityProfile::of_spheres().top),
                 "densest_fraction", "it must be larger than top_fraction; give for example 0.7");
-  visit.real("margin", fluid.margin,
-             {.unit = "m",
-              .meaning = "around a grain, where the solid fraction counts; default: the largest diameter",
-              .above = 0.0,
-              .example = 5e-3});
+  visit.real(
+      "margin", fluid.margin,
+      {.unit = "m",
+       .meaning = "distance around a grain within which the solid fraction counts; default: the largest diameter",
+       .above = 0.0,
+       .example = 5e-3});
   visit.real("tolerance", fluid.tolerance,
              {.unit = "diameters",
               .meaning = "distance a grain moves before solid fractions are computed again",
               .at_least = 0.0,
               .at_most = 0.1});
-  visit.section(
-      "ramp", fluid.ramp,
-      {.meaning = "raises the Shields number in steps, each time all grains are at rest, until motion does not "
-                  "end; it is then the threshold of the bed"});
+  visit.section("ramp", fluid.ramp,
+                {.meaning = "raises the Shields number by a step whenever all grains are at rest, until motion does "
+                            "not end: the threshold of the bed"});
   visit.flag("rough_floor", fluid.rough_floor, {.meaning = "grains that touch the floor do not move along it"});
   visit.choice<ModelUnits>(
       "units", fluid.units,

@@ -41,13 +41,12 @@ TransportScales transport_scales(const RunContext& run) {
 }
 
 void describe_moving_speed(SectionVisitor& visit, std::optional<double>& moving_speed) {
-  visit.real(
-      "moving_speed", moving_speed,
-      {.unit = "m/s",
-       .meaning = "faster grains are moving; default: 1 % of the lower of sqrt((s - 1) g d) and Stokes' settling "
-                  "speed, of sqrt(g d) without a fluid, of v_0 in a model fluid",
-       .at_least = 0.0,
-       .example = 1e-3});
+  visit.real("moving_speed", moving_speed,
+             {.unit = "m/s",
+              .meaning = "faster grains count as moving; default: 1 % of the smaller of sqrt((s - 1) g d) and Stokes' "
+                         "settling speed; without a fluid of sqrt(g d), in a model fluid of v_0",
+              .at_least = 0.0,
+              .example = 1e-3});
 }
 
 }  // namespace thalweg::analysis

@@ -216,7 +216,7 @@ void check(const BedSurfaceKeys&, const RunContext& run) {
   require_grains(run, "measure");
   if (run.box.periodic[2])
     throw KeyError("",
-                   "a bed has a height above a bottom, and here z is periodic; remove the section or give "
+                   "the bed height is measured from the bottom, but z is periodic; remove the section or give "
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
 }
 

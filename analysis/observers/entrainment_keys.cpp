@@ -19,12 +19,12 @@ constexpr std::size_t samples_a_block = 512 / sizeof(GrainSample);
 }  // namespace
 
 void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
-  visit.integer_list("grains", keys.grains,
-                     {.meaning = "ids of the grains, in the order of the populations from 0, of clumps those of their "
-                                 "first members; else the free ones whose centre is above the bed's height less one "
-                                 "reference diameter",
-                      .at_least = 0,
-                      .example = 0});
+  visit.integer_list(
+      "grains", keys.grains,
+      {.meaning = "ids of the grains, numbered through the populations from 0 (of a clump that of its first member); "
+                  "default: the free grains whose centre is above the bed height less one reference diameter",
+       .at_least = 0,
+       .example = 0});
   visit.real("from", keys.from, {.unit = "s", .meaning = "start of the observation", .at_least = 0.0});
   visit.real("memory", keys.memory,
              {.unit = "s", .meaning = "time before entrainment that is recorded for each grain", .above = 0.0});
@@ -46,10 +46,11 @@ void check(const EntrainmentKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
   for (const GlobalId id : keys.grains)
     if (const GlobalId clump = run.grains->first_member(id); clump != id)
-      throw KeyError("grains", fmt::format("grain {} is a member of the clump {}; give that number", id, clump));
+      throw KeyError("grains",
+                     fmt::format("grain {} is a member of clump {}; give the number of the clump", id, clump));
   if (keys.grains.empty() && run.box.periodic[2])
     throw KeyError("",
-                   "a bed has a height above a bottom, and here z is periodic; name the grains, or give "
+                   "the bed height is measured from the bottom, but z is periodic; name the grains, or give "
                    "domain.boundaries bottom and top");
   require_full_gravity_from(run, keys.from);
 }

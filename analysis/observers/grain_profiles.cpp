@@ -218,12 +218,12 @@ bool GrainProfiles::load_sums(ArchiveReader& archive, const std::string& group) 
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
   describe_from(visit, keys.from);
   describe_every(visit, keys.every);
-  visit.real("layer", keys.layer,
-             {.unit = "m",
-              .meaning = "height of a layer, adjusted so that a whole number of them fills the box; default: half the "
-                         "largest diameter",
-              .above = 0.0,
-              .example = 2.5e-3});
+  visit.real(
+      "layer", keys.layer,
+      {.unit = "m",
+       .meaning = "height of a layer, adjusted to fill the box with whole layers; default: half the largest diameter",
+       .above = 0.0,
+       .example = 2.5e-3});
 }
 
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,

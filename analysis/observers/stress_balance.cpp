@@ -212,7 +212,7 @@ void check(const StressBalanceKeys& keys, const RunContext& run) {
   require_grains(run, "share the stress");
   if (run.box.periodic[2])
     throw KeyError("",
-                   "stress is summed from the top down, and z is periodic; remove the section or give "
+                   "stress is summed from the top down, but z is periodic; remove the section or give "
                    "domain.boundaries bottom and top");
   require_full_gravity_from(run, keys.from);
 }

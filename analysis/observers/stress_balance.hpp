@@ -44,8 +44,8 @@ namespace thalweg::analysis {
 struct StressBalanceKeys {
   static constexpr const char* section = "stress_balance";
   static constexpr const char* meaning =
-      "all stresses of grains and fluid over z, in profiles.h5, and how far their total is from what the driving force "
-      "prescribes in steady state";
+      "all stresses of grains and fluid over z, in profiles.h5, and the difference of their total from the driving "
+      "stress of the steady state";
   static constexpr Needs needs = Needs::both;
   static constexpr const char* without_fluid = "use grain_profiles";
   double from = 0.0;                 // s: the means begin here

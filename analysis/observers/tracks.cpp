@@ -165,10 +165,11 @@ bool Tracks::load(ArchiveReader& archive) {
 }
 
 void describe(SectionVisitor& visit, TracksKeys& keys) {
-  visit.integer_list("grains", keys.grains,
-                     {.meaning = "ids of the grains, in the order of the populations from 0; else every one_in-th",
-                      .at_least = 0,
-                      .example = 0});
+  visit.integer_list(
+      "grains", keys.grains,
+      {.meaning = "ids of the grains, numbered through the populations from 0; default: every one_in-th grain",
+       .at_least = 0,
+       .example = 0});
   visit.integer("one_in", keys.one_in,
                 {.meaning = "grains 0, one_in, 2 one_in, ... where no ids are given", .at_least = 1});
   describe_every(visit, keys.every);
@@ -182,11 +183,11 @@ static std::int64_t recorded_grains(const TracksKeys& keys, std::int64_t all) {
 void check(const TracksKeys& keys, const RunContext& run) {
   require_ids(run, keys.grains);
   if (!keys.grains.empty() && keys.one_in != 1)
-    throw KeyError("one_in", "analysis.tracks.grains names the grains already; give one of them");
+    throw KeyError("one_in", "analysis.tracks.grains already names the grains; give one of the two");
   const std::int64_t all = run.grains->count(), recorded = recorded_grains(keys, all);
   if (recorded > TracksKeys::most_grains)
-    throw KeyError("", fmt::format("it would record {} grains, and one rank can gather {}; name fewer in grains, give "
-                                   "one_in: {}, or take all grains from output.grains",
+    throw KeyError("", fmt::format("it would record {} grains, but one rank can gather only {}; name fewer in grains, "
+                                   "give one_in: {}, or take all grains from output.grains",
                                    recorded, TracksKeys::most_grains,
                                    (all + TracksKeys::most_grains - 1) / TracksKeys::most_grains));
 }

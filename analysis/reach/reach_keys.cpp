@@ -16,15 +16,14 @@ std::int64_t default_sections(double length, double diameter) {
 
 void describe(SectionVisitor& visit, ReachKeys& keys) {
   describe_from(visit, keys.from);
-  visit.real("every", keys.every, {.unit = "s", .meaning = "between looks at the grains", .above = 0.0});
-  visit.real(
-      "record_every", keys.record_every,
-      {.unit = "s",
-       .meaning = "between records, rounded up to whole looks: over it grains are counted and a pixel of the bed must "
-                  "stand still",
-       .above = 0.0});
+  visit.real("every", keys.every, {.unit = "s", .meaning = "between observations of the grains", .above = 0.0});
+  visit.real("record_every", keys.record_every,
+             {.unit = "s",
+              .meaning = "length of a record, over which grains are counted and a pixel of the bed must stand still; "
+                         "rounded up to whole observations",
+              .above = 0.0});
   visit.integer("sections", keys.sections,
-                {.meaning = "planes across x at equal distances; default: one a reference diameter",
+                {.meaning = "planes across x at equal distances; default: one per reference diameter",
                  .at_least = 2,
                  .example = 20});
   visit.real("pixel", keys.pixel,
@@ -37,17 +36,17 @@ void describe(SectionVisitor& visit, ReachKeys& keys) {
   visit.require(keys.sections.value_or(2) <= ReachKeys::most_sections, "sections",
                 fmt::format("give at most {}", ReachKeys::most_sections));
   visit.require(keys.record_every >= keys.every, "record_every",
-                fmt::format("a record takes at least one look, {:g} s; give as much or more", keys.every));
+                fmt::format("a record holds at least one observation; give at least {:g} s", keys.every));
 }
 
 void check(const ReachKeys&, const RunContext& run) {
   require_grains(run, "count");
   if (run.box.periodic[2])
     throw KeyError("",
-                   "a bed has a level above a bottom, and here z is periodic; remove the section or give "
+                   "the bed level is measured from the bottom, but z is periodic; remove the section or give "
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
   if (!run.grains->any_free())
-    throw KeyError("", "no grain is free to move, so that there is no transport; remove the section");
+    throw KeyError("", "no grain is free to move, so there is no transport; remove the section");
 }
 
 std::unique_ptr<Observer> make_observer(const ReachKeys& keys, const RunContext& run, const RunningSystem& system) {

@@ -150,8 +150,8 @@ constexpr std::int64_t most_drawn = 100000000;
 void draw_sizes(Population& population) {
   if (population.count > most_drawn)
     throw KeyError(wanted_by(population),
-                   fmt::format("sizes are drawn for at most {} grains, since every rank has those of all, and here are "
-                               "{}; give fewer grains, or one diameter",
+                   fmt::format("sizes can be drawn for at most {} grains, as every rank stores all of them, and there "
+                               "are {}; give fewer grains, or one diameter",
                                most_drawn, population.count));
   const bool disks = population.thickness > 0.0;
   population.diameters = sampled_diameters(population.sizes, population.count, population.placement.seed, disks);
@@ -180,11 +180,11 @@ double wanted_volume(const Population& population, const PeriodicBox& box, doubl
   const FillKeys& fill = *population.fill;
   const double depth = fill.depth ? *fill.depth : *fill.layers * layer;
   if (depth > room.z() && room.z() > 0.0)
-    throw KeyError(
-        wanted_by(population),
-        fmt::format("a bed of {:.4g} m is deeper than the {:g} m of its room; give {}, or more room", depth, room.z(),
-                    fill.depth ? fmt::format("at most {:g} m", room.z())
-                               : fmt::format("at most {:.3g} layers of {:.4g} m", room.z() / layer, layer)));
+    throw KeyError(wanted_by(population),
+                   fmt::format("a bed of {:.4g} m is deeper than its region of {:g} m; give {}, or a higher region",
+                               depth, room.z(),
+                               fill.depth ? fmt::format("at most {:g} m", room.z())
+                                          : fmt::format("at most {:.3g} layers of {:.4g} m", room.z() / layer, layer)));
   const double settled = settled_fraction(box, layer, population.thickness > 0.0);
   return (1.0 - fill.porosity.value_or(1.0 - settled)) * depth * room.x() * room.y();
 }

@@ -21,7 +21,7 @@ static void describe_material(SectionVisitor& visit, MaterialKeys& material, boo
              {.unit = "kg/s", .meaning = "where the section contact has one", .at_least = 0.0, .example = 0.09});
   if (walls) {
     visit.not_here("friction", "the friction of walls is contact.wall_friction; give it there");
-    visit.not_here("rolling_friction", "give contact.wall_rolling_friction instead, which is that of walls");
+    visit.not_here("rolling_friction", "the rolling friction of walls is contact.wall_rolling_friction; give it there");
     return;
   }
   visit.real("friction", material.friction, {.meaning = "between grains", .at_least = 0.0, .example = 0.5});

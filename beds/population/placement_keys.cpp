@@ -14,7 +14,7 @@ void describe(SectionVisitor& visit, RegionKeys& region) {
 
 void describe(SectionVisitor& visit, PlacementKeys& placement) {
   visit.text("file", placement.file,
-             {.meaning = "a bed file, as a run leaves it (bed.h5); relative to this file",
+             {.meaning = "a bed file that a run has written (bed.h5), relative to this file",
               .example = "../settled_bed/run/bed.h5"});
   const bool by_file = placement.file.has_value();
   const OnlyIf of_file{by_file || !visit.reading(), "only a placement from a file has it"};
@@ -39,14 +39,14 @@ void describe(SectionVisitor& visit, PlacementKeys& placement) {
       "pattern", placement.pattern,
       {{PlacementPattern::uniform, "uniform", "evenly spread, slightly disturbed"},
        {PlacementPattern::random, "random", "at random without overlap, up to a third of the volume"},
-       {PlacementPattern::dense, "dense", "the same up to 0.6: they push each other apart"}},
+       {PlacementPattern::dense, "dense", "at random up to 0.6 of the volume: overlapping grains are pushed apart"}},
       {.meaning = "how the grains are spread over the region", .only_if = by_file ? of_none : spread_out});
   visit.integer("seed", placement.seed,
                 {.meaning = "seed of the random placement; default: 1 of the first population, 2 of the second, ...",
                  .at_least = 0,
                  .only_if = by_file ? of_none : spread_out});
   visit.section("region", placement.region,
-                {.meaning = by_file ? "only the grains of the file with their centre in it"
+                {.meaning = by_file ? "only the grains of the file whose centre is in it"
                                     : "where the grains are put; default: the whole box",
                  .only_if = spread_out});
 }

@@ -33,15 +33,15 @@ static void describe(SectionVisitor& visit, BodyKeys& body) {
 
 static void describe(SectionVisitor& visit, ShapeKeys& shape) {
   visit.text("stl", shape.stl,
-             {.meaning = "file with the closed surface of one grain, relative to this file; spheres are made of it",
+             {.meaning = "file with the closed surface of one grain, relative to this file; a clump is fitted to it",
               .example = "pebble.stl"});
   const bool of_surface = shape.stl.has_value();
-  const OnlyIf has_surface{of_surface || !visit.reading(), "only a shape made of an STL file has it; remove it"};
+  const OnlyIf has_surface{of_surface || !visit.reading(), "only a shape from an STL file has it; remove it"};
   visit.integer("spheres", shape.spheres,
-                {.meaning = "at most, of each clump", .at_least = 1, .example = 20, .only_if = has_surface});
+                {.meaning = "largest number in each clump", .at_least = 1, .example = 20, .only_if = has_surface});
   visit.real("tolerance", shape.tolerance,
              {.unit = "equivalent diameters",
-              .meaning = "mean distance of the surface from the inscribed spheres at which these suffice",
+              .meaning = "spheres are added until the mean distance of the surface from them is no larger than this",
               .above = 0.0,
               .example = 0.02,
               .only_if = has_surface});
@@ -51,17 +51,17 @@ static void describe(SectionVisitor& visit, ShapeKeys& shape) {
               .above = 0.0,
               .example = 0.001,
               .only_if = has_surface});
-  const OnlyIf has_spheres{!of_surface, "the spheres are made of the surface; remove this key or stl"};
+  const OnlyIf has_spheres{!of_surface, "the spheres follow from the surface; remove this key or stl"};
   visit.list("clump", shape.clump,
              {.meaning = "spheres that may overlap and move as one rigid grain",
               .required = !of_surface,
               .only_if = has_spheres});
   visit.section("body", shape.body,
-                {.meaning = "what the spheres stand for; default: their union", .only_if = has_spheres});
+                {.meaning = "body that the spheres represent; default: their union", .only_if = has_spheres});
   visit.require(of_surface || !shape.clump.empty(), "clump",
                 "a clump needs at least one sphere; give its position and diameter in m");
   visit.require(!of_surface || shape.spheres || shape.tolerance, "spheres",
-                "it is not said how many spheres to make of the surface; give their number, a tolerance, or both");
+                "the number of spheres is missing; give it, a tolerance, or both");
 }
 
 static void describe(SectionVisitor& visit, OrientationKeys& orientation) {
@@ -80,13 +80,15 @@ static void describe(SectionVisitor& visit, DiameterKeys& keys) { describe(visit
 
 // Shape, and diameter.
 static void describe_size(SectionVisitor& visit, PopulationKeys& grains, const OnlyIf& no_file) {
-  visit.section("shape", grains.shape, {.meaning = "of grains that are no spheres", .only_if = no_file});
-  const OnlyIf of_shape{grains.shape || !visit.reading(), "spheres have none; give a shape or remove the key"};
-  visit.section("orientation", grains.orientation,
-                {.meaning = "of all clumps; default: each at random", .only_if = no_file.holds ? of_shape : no_file});
+  visit.section("shape", grains.shape, {.meaning = "shape of grains that are not spheres", .only_if = no_file});
+  const OnlyIf of_shape{grains.shape || !visit.reading(),
+                        "spheres have no orientation; give a shape or remove the key"};
+  visit.section(
+      "orientation", grains.orientation,
+      {.meaning = "the same for all clumps; default: random for each", .only_if = no_file.holds ? of_shape : no_file});
   SectionKey about{.meaning =
-                       "the same for all grains, or a distribution; of a shape that of the sphere of its volume, by "
-                       "default as the shape is given",
+                       "the same for all grains, or a distribution; with a shape that of the sphere of equal volume, "
+                       "by default of the shape as given",
                    .required = !grains.shape,
                    .shorthand = "value",
                    .expected = "a number in m above 0, for example 0.005",
@@ -105,18 +107,21 @@ static void describe_size(SectionVisitor& visit, PopulationKeys& grains, const O
 
 static void describe(SectionVisitor& visit, FillKeys& fill) {
   visit.real("depth", fill.depth,
-             {.unit = "m", .meaning = "of the settled bed over the floor of its room", .above = 0.0, .example = 0.02});
+             {.unit = "m",
+              .meaning = "of the settled bed, above the floor of the placement's region or of the box",
+              .above = 0.0,
+              .example = 0.02});
   visit.real("layers", fill.layers,
              {.meaning = "the depth in diameters: analysis.reference_diameter, else the population's median by mass",
               .above = 0.0,
               .example = 4.0});
   visit.real("porosity", fill.porosity,
-             {.meaning = "of the settled bed; default: 0.4, between near side walls 0.446, of disks 0.2",
+             {.meaning = "of the settled bed; default: 0.4; between near side walls 0.446; for disks 0.2",
               .above = 0.0,
               .below = 1.0,
               .example = 1.0 - settled_bed});
   visit.require(fill.depth.has_value() != fill.layers.has_value(), "depth",
-                "give either the depth in m or its number of layers");
+                "give either the depth in m or the number of layers");
 }
 
 static void describe_count(SectionVisitor& visit, PopulationKeys& grains, const OnlyIf& no_file) {
@@ -134,10 +139,10 @@ static void describe_count(SectionVisitor& visit, PopulationKeys& grains, const 
               .only_if = no_file.holds ? no_count : no_file});
   const OnlyIf no_number{(grains.count == 0 && !grains.solid_fraction) || !visit.reading(),
                          "count or solid_fraction gives the number of grains; remove one of the two"};
-  visit.section("fill", grains.fill,
-                {.meaning = "depth of the bed that the grains make once settled, each population its own share; in "
-                            "place of count",
-                 .only_if = no_file.holds ? no_number : no_file});
+  visit.section(
+      "fill", grains.fill,
+      {.meaning = "depth of the settled bed, in place of count; each population gives the depth that it contributes",
+       .only_if = no_file.holds ? no_number : no_file});
   if (!no_file.holds) return;
   visit.require(grains.count > 0 || grains.solid_fraction || grains.fill, "count",
                 "the number of grains is missing; give a whole number, for example 100, solid_fraction, fill or "
@@ -181,7 +186,7 @@ void describe(SectionVisitor& visit, PopulationKeys& grains) {
   visit.require(
       !grains.motion || (!grains.fixed && !grains.prescribed_velocity && !grains.prescribed_angular_velocity &&
                          grains.velocity.isZero(0.0) && grains.angular_velocity.isZero(0.0)),
-      "motion", "it already says how the grains move; remove fixed and all velocities beside it");
+      "motion", "motion already says how the grains move; remove fixed and all velocities beside it");
   visit.require(
       !grains.shape || !grains.motion, "motion",
       "grains that move together as one body need no clumps; give the spheres as grains, or remove the shape");

@@ -7,7 +7,7 @@ static void describe_entrance(SectionVisitor& visit, RegionKeys& region, std::op
                               std::int64_t& seed, const char* velocity_meaning) {
   visit.section(
       "region", region,
-      {.meaning = "where they come in: their centres, each at a random free place; where none is free they wait",
+      {.meaning = "where the centres of the grains come in, each at a random free place; without one they wait",
        .required = true});
   visit.vec3("velocity", velocity, {.unit = "m/s", .meaning = velocity_meaning, .example = 0.0});
   visit.integer("seed", seed, {.meaning = "seed of the random places", .at_least = 0});
@@ -20,43 +20,40 @@ static void describe(SectionVisitor& visit, AboveBedKeys& range) {
 }
 
 void describe(SectionVisitor& visit, SupplyKeys& supply) {
-  visit.integer("population", supply.population,
-                {.meaning = "number of the population, in grains, that they are like: sizes, shape, density, contact",
-                 .at_least = 0});
-  visit.real("rate", supply.rate, {.unit = "1/s", .meaning = "grains a second", .above = 0.0, .example = 20.0});
+  visit.integer(
+      "population", supply.population,
+      {.meaning = "population, by its number in grains, that gives sizes, shape, density and contact", .at_least = 0});
+  visit.real("rate", supply.rate, {.unit = "1/s", .meaning = "grains per second", .above = 0.0, .example = 20.0});
   visit.real("mass_rate", supply.mass_rate,
              {.unit = "kg/s", .meaning = "in place of rate", .above = 0.0, .example = 1e-3});
   visit.real("transport_rate", supply.transport_rate,
              {.meaning = "q* over the width of the box, in place of rate", .above = 0.0, .example = 0.1});
   visit.require(supply.rate.has_value() + supply.mass_rate.has_value() + supply.transport_rate.has_value() == 1, "rate",
-                "give one of rate in grains/s, mass_rate in kg/s and transport_rate, which is q*");
-  visit.real("from", supply.from, {.unit = "s", .meaning = "time of the beginning", .at_least = 0.0});
+                "give exactly one of rate in grains/s, mass_rate in kg/s and transport_rate (q*)");
+  visit.real("from", supply.from, {.unit = "s", .meaning = "start of the supply", .at_least = 0.0});
   visit.real("until", supply.until,
-             {.unit = "s", .meaning = "time of the end; default: that of the run", .above = 0.0, .example = 10.0});
+             {.unit = "s", .meaning = "end of the supply; default: end of the run", .above = 0.0, .example = 10.0});
   visit.require(!supply.until || *supply.until > supply.from, "until",
                 "the supply ends before it begins; give a time in s after from");
   describe_entrance(visit, supply.region, supply.velocity, supply.seed,
-                    "with which they come in; default: that of the fluid there, else zero");
-  visit.section(
-      "above_bed", supply.above_bed,
-      {.meaning =
-           "only where the centre is so high, within the region, above the highest of the grains that lie or roll, "
-           "walls and solids below; default: in all of the region"});
+                    "of the grains that come in; default: that of the fluid there, without a fluid zero");
+  visit.section("above_bed", supply.above_bed,
+                {.meaning = "height of the centre above the highest grain that lies or rolls, wall or solid below it, "
+                            "within the region; default: all of the region"});
 }
 
 static void describe(SectionVisitor& visit, RecirculationKeys& recirculation) {
-  visit.real("delay", recirculation.delay, {.unit = "s", .meaning = "until they come in again", .at_least = 0.0});
-  describe_entrance(
-      visit, recirculation.region, recirculation.velocity, recirculation.seed,
-      "with which they come in; default: the one they had if they come in at the height at which they left, "
-      "else as of a supply");
+  visit.real("delay", recirculation.delay, {.unit = "s", .meaning = "time until they come in again", .at_least = 0.0});
+  describe_entrance(visit, recirculation.region, recirculation.velocity, recirculation.seed,
+                    "of the grains that come in; default: that with which they left if they come in at the height at "
+                    "which they left, otherwise as for a supply");
 }
 
 void describe(SectionVisitor& visit, SinkKeys& sink) {
   visit.section("region", sink.region,
                 {.meaning = "every free grain whose centre enters it leaves the box", .required = true});
   visit.section("recirculation", sink.recirculation,
-                {.meaning = "they come in again elsewhere; default: they are gone"});
+                {.meaning = "grains that leave come in again elsewhere; default: they are removed"});
 }
 
 }  // namespace thalweg::beds

@@ -11,13 +11,13 @@ static void describe(SectionVisitor& visit, PlateKeys& plate) {
              {.meaning = "direction of its length, in the plane of the wall; need not be a unit vector"});
   visit.real("length", plate.length,
              {.unit = "m",
-              .meaning = "along it, half on either side of point",
+              .meaning = "in this direction, half on either side of point",
               .required = true,
               .above = 0.0,
               .example = 0.05});
   visit.real("width", plate.width,
              {.unit = "m",
-              .meaning = "across it, half on either side of point",
+              .meaning = "across this direction, half on either side of point",
               .required = true,
               .above = 0.0,
               .example = 0.02});
@@ -27,7 +27,7 @@ static void describe(SectionVisitor& visit, PlateKeys& plate) {
 void describe(SectionVisitor& visit, WallKeys& wall) {
   visit.vec3("point", wall.point,
              {.unit = "m",
-              .meaning = "a point on the plane, for a plate its centre; at the start",
+              .meaning = "a point on the plane at the start, for a plate its centre",
               .required = true,
               .example = 0.0});
   visit.vec3("normal", wall.normal,
@@ -37,7 +37,7 @@ void describe(SectionVisitor& visit, WallKeys& wall) {
   visit.real("rolling_friction", wall.rolling_friction,
              {.meaning = "default: contact.wall_rolling_friction", .at_least = 0.0, .example = 0.05});
   visit.vec3("velocity", wall.velocity, {.unit = "m/s", .meaning = "constant"});
-  visit.section("oscillation", wall.oscillation, {.meaning = "on top of the velocity"});
+  visit.section("oscillation", wall.oscillation, {.meaning = "added to the velocity"});
   visit.section("plate", wall.plate,
                 {.meaning = "only this part of the plane, with grains on both sides and round its edges"});
   visit.require(!wall.normal.isZero(0.0), "normal", "a direction cannot be zero; give for example [0, 0, 1]");

@@ -43,9 +43,8 @@ void check_surface(const TriangleMesh& mesh) {
   if (const std::string open = what_is_open(mesh); !open.empty())
     throw InputError(fmt::format("The surface is not closed: {}; repair it where it was made.", open));
   if (const int parts = part_count(mesh); parts > 1)
-    throw InputError(fmt::format(
-        "The surface has {} parts that do not hang together, and a grain is one body; keep the outer one alone.",
-        parts));
+    throw InputError(
+        fmt::format("The surface has {} separate parts, and a grain is one body; keep only the outer one.", parts));
   const double volume = signed_volume(mesh);
   if (!(volume > 0.0))
     throw InputError(fmt::format(
@@ -53,10 +52,10 @@ void check_surface(const TriangleMesh& mesh) {
   constexpr double smallest = 1e-6, largest = 1.0;  // m
   const double diameter = diameter_of_volume(volume);
   if (!(diameter >= smallest && diameter <= largest))
-    throw InputError(fmt::format(
-        "The surface is as large as a sphere of {:g} m, and a grain has {:g} to {:g} m; give the scale that makes m of "
-        "the unit of the file, 0.001 for one in mm.",
-        diameter, smallest, largest));
+    throw InputError(
+        fmt::format("The surface is as large as a sphere of {:g} m, and a grain has {:g} to {:g} m; give the scale "
+                    "that converts the unit of the file to m: 0.001 for mm.",
+                    diameter, smallest, largest));
 }
 
 // Mean distance of points of the surface from the spheres inscribed so far, as these are added.
@@ -128,7 +127,7 @@ double growth_to(const std::vector<dem::PlacedSphere>& spheres, double volume) {
 
 MeshClump clump_of(const TriangleMesh& mesh, const ClumpFit& fit) {
   if (!fit.spheres && !fit.tolerance)
-    throw InputError("Nothing says how many spheres the clump shall have; give spheres, tolerance, or both.");
+    throw InputError("The number of spheres is missing; give spheres, tolerance, or both.");
   check_surface(mesh);
   MeshClump clump;
   clump.body = body_moments(mesh);

@@ -51,12 +51,12 @@ static bool rise(const std::vector<double>& sizes) {
 static void describe(SectionVisitor& visit, SieveKeys& sieve) {
   visit.real_list("sizes", sieve.sizes,
                   {.unit = "m",
-                   .meaning = "of the sieves, rising",
+                   .meaning = "of the sieves, in rising order",
                    .required = true,
                    .above = 0.0,
                    .examples = {2e-3, 4e-3, 8e-3}});
   visit.real_list("finer", sieve.finer,
-                  {.meaning = "share of the mass that passes each sieve, from 0 to 1; straight over ln d between them",
+                  {.meaning = "share of the mass that passes each sieve, from 0 to 1; linear in ln d between sieves",
                    .required = true,
                    .at_least = 0.0,
                    .at_most = 1.0,
@@ -65,8 +65,9 @@ static void describe(SectionVisitor& visit, SieveKeys& sieve) {
   visit.require(sieve.sizes.size() >= 2 && rise(sieve.sizes), "sizes",
                 "give at least two sieves in m, each at least 0.1 % wider than the one before");
   if (sieve.sizes.empty() || sieve.finer.empty()) return;  // missing, which is said when all is read
-  visit.require(sieve.sizes.back() <= widest_sizes * sieve.sizes.front(), "sizes",
-                fmt::format("the widest sieve can be {:g} times the finest; leave out the finest", widest_sizes));
+  visit.require(
+      sieve.sizes.back() <= widest_sizes * sieve.sizes.front(), "sizes",
+      fmt::format("the widest sieve can be at most {:g} times the finest; leave out the finest", widest_sizes));
   visit.require(sieve.finer.size() == sieve.sizes.size(), "finer", "give as many shares of the mass as sieves");
   visit.require(
       std::is_sorted(sieve.finer.begin(), sieve.finer.end()) && sieve.finer.front() == 0.0 && sieve.finer.back() == 1.0,
@@ -88,8 +89,8 @@ static void describe_percentiles(SectionVisitor& visit, SizesKeys& sizes) {
   visit.require(rise({minimum, *sizes.d16, *sizes.d50, *sizes.d84, maximum}), "d50",
                 "minimum, d16, d50, d84 and maximum must rise in this order, by at least 0.1 % each");
   visit.require(maximum <= widest_sizes * minimum, "d50",
-                fmt::format("the sizes reach from {:.4g} to {:.4g} m, and the largest can be {:g} times the smallest; "
-                            "give a larger minimum in m",
+                fmt::format("the sizes reach from {:.4g} to {:.4g} m, but the largest can be at most {:g} times the "
+                            "smallest; give a larger minimum in m",
                             minimum, maximum, widest_sizes));
 }
 
@@ -98,15 +99,15 @@ void describe(SectionVisitor& visit, SizesKeys& sizes, double& diameter) {
   if (!visit.reading() && !sizes.given()) value = diameter;
   visit.real("value", value, {.unit = "m", .meaning = "of every grain", .above = 0.0, .example = 5e-3});
   visit.choice<SizeDistribution>("distribution", sizes.distribution,
-                                 {{SizeDistribution::lognormal, "lognormal", "of the number, with the next four keys"}},
+                                 {{SizeDistribution::lognormal, "lognormal", "by number, with the next four keys"}},
                                  {.meaning = "in place of a value"});
   visit.real("median", sizes.median, {.unit = "m", .meaning = "of lognormal", .above = 0.0, .example = 5e-3});
   visit.real("geometric_deviation", sizes.geometric_deviation,
              {.meaning = "of lognormal: exp of the deviation of ln d", .above = 1.0, .at_most = 3.0, .example = 1.2});
   visit.real("minimum", sizes.minimum,
-             {.unit = "m", .meaning = "nothing finer; with d16 by default d16^2/d50", .above = 0.0, .example = 3.5e-3});
+             {.unit = "m", .meaning = "of all grains; default with d16: d16^2/d50", .above = 0.0, .example = 3.5e-3});
   visit.real("maximum", sizes.maximum,
-             {.unit = "m", .meaning = "nothing coarser; with d84 by default d84^2/d50", .above = 0.0, .example = 7e-3});
+             {.unit = "m", .meaning = "of all grains; default with d84: d84^2/d50", .above = 0.0, .example = 7e-3});
   visit.real_list("sizes", sizes.sizes,
                   {.unit = "m", .meaning = "a few sizes, in place of a value", .above = 0.0, .examples = {4e-3, 5e-3}});
   visit.real_list(

@@ -46,12 +46,13 @@ bool FaceKeys::operator==(const FaceKeys& other) const {
 }
 
 void describe(SectionVisitor& visit, FaceKeys& face) {
-  visit.choice("type", face.type, face_types,
-               {.meaning = "kind of face",
-                .required = true,
-                .removed = {{"law_of_the_wall_as_printed",
-                             "the law with the coefficient that is printed is {type: slip_law_of_the_wall, "
-                             "coefficient: 2.35}; write that"}}});
+  visit.choice(
+      "type", face.type, face_types,
+      {.meaning = "kind of face",
+       .required = true,
+       .removed = {
+           {"law_of_the_wall_as_printed",
+            "the law with the printed coefficient is {type: slip_law_of_the_wall, coefficient: 2.35}; write that"}}});
   visit.not_here("on_node", "faces lie half a cell beyond the last cell centres; remove the key");
   const bool law = face.type == FaceType::slip_law_of_the_wall;
   const std::string of_the_law =
@@ -72,30 +73,29 @@ void describe(SectionVisitor& visit, FaceKeys& face) {
                    law ? "of_first_cell finds the coefficient; remove one of the two" : of_the_law, with_the_law}});
   visit.real("slip_length", face.slip_length,
              {.unit = "m",
-              .meaning = "from the wall to where the profile would come to rest",
+              .meaning = "distance behind the wall at which the extrapolated velocity is zero",
               .required = true,
               .at_least = 0.0,
               .example = 1e-4,
               .only_if = {face.type == FaceType::navier_slip, "only a navier_slip wall has a slip length; remove it",
                           "type: navier_slip"}});
-  visit.vec3(
-      "velocity", face.velocity,
-      {.unit = "m/s",
-       .meaning = "of the wall or of the fluid that enters; of an inlet that recycles the mean over the whole face",
-       .required = true,
-       .example = 0.1,
-       .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it",
-                   "type: moving or velocity_inlet"}});
+  visit.vec3("velocity", face.velocity,
+             {.unit = "m/s",
+              .meaning = "of the wall or of the incoming fluid; with recycling_plane its mean over the whole face",
+              .required = true,
+              .example = 0.1,
+              .only_if = {face.has_velocity(), "only a moving wall or a velocity_inlet has a velocity; remove it",
+                          "type: moving or velocity_inlet"}});
   visit.real("recycling_plane", face.recycling_plane,
              {.unit = "m",
-              .meaning = "position along the normal of the face: the flow of this plane enters again, with its profile "
-                         "and its turbulence, brought to the velocity; default: all enters with the velocity",
+              .meaning = "position along the face normal of the plane whose flow enters again, with its profile and "
+                         "turbulence, at a mean of `velocity`; default: uniform inflow at `velocity`",
               .above = 0.0,
               .example = 0.08,
               .only_if = {face.type == FaceType::velocity_inlet,
                           "only a velocity_inlet recycles the flow of a plane; remove it", "type: velocity_inlet"}});
   visit.section("oscillation", face.oscillation,
-                {.meaning = "dry grains only: on top of the velocity",
+                {.meaning = "dry grains only: added to the velocity",
                  .only_if = {face.type == FaceType::moving, "only a moving wall swings; remove it", "type: moving"}});
   visit.real("pressure", face.pressure,
              {.unit = "Pa",

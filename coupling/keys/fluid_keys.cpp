@@ -11,9 +11,8 @@ static void describe(SectionVisitor& visit, FlowTargetKeys& target) {
               .required = true,
               .above = 0.0,
               .example = 0.1});
-  visit.flag(
-      "on_grains", target.on_grains,
-      {.meaning = "the force is that of a pressure gradient, which grains feel, too; false: on the fluid alone"});
+  visit.flag("on_grains", target.on_grains,
+             {.meaning = "the force is a pressure gradient, which acts on grains, too; false: on the fluid alone"});
 }
 
 // The constant of Zhang et al. (2022).
@@ -44,9 +43,10 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
              {.unit = "kg/m^3", .meaning = "mass density", .required = true, .above = 0.0, .example = 1000.0});
   visit.real("kinematic_viscosity", fluid.kinematic_viscosity,
              {.unit = "m^2/s", .meaning = "molecular viscosity", .required = true, .above = 0.0, .example = 1e-6});
-  visit.choice("subgrid_model", fluid.subgrid_model, choices_of(lbm::SubgridModel{}),
-               {.meaning = "of the eddies that cells do not resolve; default: smagorinsky where its constant is given, "
-                           "else qr"});
+  visit.choice(
+      "subgrid_model", fluid.subgrid_model, choices_of(lbm::SubgridModel{}),
+      {.meaning =
+           "model of the eddies that cells do not resolve; default: smagorinsky where its constant is given, else qr"});
   visit.real("smagorinsky_constant", fluid.smagorinsky_constant,
              {.meaning = "C_s of subgrid_model: smagorinsky",
               .at_least = 0.0,
@@ -64,14 +64,16 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
               .example = 2e-5});
   for (const char* removed : {"maximum_lattice_velocity", "expected_velocity"})
     visit.not_here(removed, "the step follows from the flow by default; remove the key, or give time_step in s");
-  visit.choice("collision", fluid.collision,
-               {.meaning = "collision operator",
-                .removed = {{"regularised",
-                             "it was unstable along walls and is gone; write trt_at_bodies, or remove the key"}}});
+  visit.choice(
+      "collision", fluid.collision,
+      {.meaning = "collision operator",
+       .removed = {{"regularised",
+                    "it was unstable along walls and has been removed; write trt_at_bodies, or remove the key"}}});
   visit.real(
       "magic_parameter", fluid.magic_parameter,
-      {.meaning = "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); default: 3/16 with trt, which puts "
-                  "walls exactly half way, 1/4 with trt_at_bodies, the calmest",
+      {.meaning =
+           "of trt and trt_at_bodies: (1/omega+ - 1/2)(1/omega- - 1/2); default: 3/16 with trt, which puts walls "
+           "exactly half way between cell centres, 1/4 with trt_at_bodies, which damps disturbances fastest",
        .above = 0.0,
        .example = 0.1875,
        .only_if = {lbm::traits_of(fluid.collision).is_trt_near_bodies,
@@ -88,8 +90,7 @@ void describe(SectionVisitor& visit, FluidKeys& fluid) {
        .example = 1.0});
   const double bulk = fluid.bulk_relaxation_time.value_or(0.0);
   visit.require(bulk == 0.0 || bulk > 0.5, "bulk_relaxation_time",
-                "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 1, or 0 for that of the "
-                "shear");
+                "a fluid damps sound only above 1/2; give more than 0.5 steps, for example 1, or 0 for that of shear");
   visit.choice<Precision>("precision", fluid.precision, {{Precision::single, "single"}, {Precision::double_, "double"}},
                           {.meaning = "of the stored populations"});
   visit.section("mean_velocity", fluid.mean_velocity,

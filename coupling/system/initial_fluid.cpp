@@ -42,17 +42,20 @@ static void describe(SectionVisitor& visit, LogProfileKeys& profile) {
 static void describe(SectionVisitor& visit, LinearProfileKeys& profile) {
   visit.real("lower", profile.lower,
              {.unit = "m", .meaning = "above the bottom; the fluid below is at rest", .at_least = 0.0});
-  visit.real(
-      "upper", profile.upper,
-      {.unit = "m", .meaning = "from where on it has the velocity", .required = true, .above = 0.0, .example = 0.04});
-  visit.vec3("velocity", profile.velocity, {.unit = "m/s", .meaning = "there", .required = true, .example = 0.0});
+  visit.real("upper", profile.upper,
+             {.unit = "m",
+              .meaning = "above the bottom; the fluid above has the full velocity",
+              .required = true,
+              .above = 0.0,
+              .example = 0.04});
+  visit.vec3("velocity", profile.velocity, {.unit = "m/s", .meaning = "at `upper`", .required = true, .example = 0.0});
   visit.require(profile.upper > profile.lower, "upper", "give a height above lower");
 }
 
 void describe(SectionVisitor& visit, InitialFluidKeys& fluid) {
   visit.vec3("uniform", fluid.uniform, {.unit = "m/s", .meaning = "the same velocity everywhere", .example = 0.0});
   visit.section("linear_profile", fluid.linear_profile,
-                {.meaning = "velocity that rises with the height, as in simple shear"});
+                {.meaning = "velocity that rises linearly with height, as in simple shear"});
   visit.section("log_profile", fluid.log_profile, {.meaning = "a turbulent profile along x over a bed"});
   visit.require(fluid.count() <= 1, fluid.uniform ? "uniform" : "linear_profile",
                 "the start is given twice; give only one of uniform, linear_profile and log_profile");

@@ -117,8 +117,8 @@ void check_whole(const std::vector<PrescribedMotion>& motions, std::span<const G
     across.cwiseAbs().maxCoeff(&axis);
     const auto [first, second] = std::minmax(a.id, b.id);
     throw InputError(
-        fmt::format("Grains {} and {} of a population that turns touch across the periodic face of axis {}, where "
-                    "their rotation would tear them apart; move all so that the population does not lie across it.",
+        fmt::format("Grains {} and {} of a rotating population touch across the periodic face of axis {}, where their "
+                    "rotation would tear them apart; move the population clear of this face.",
                     first, second, "xyz"[axis]));
   });
 }

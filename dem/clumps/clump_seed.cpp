@@ -169,8 +169,8 @@ void check(std::span<const ClumpSeed> clumps, const PeriodicBox& box) {
       const bool in_plane = clump.shape->thickness > 0.0 && axis == 1;
       if (box.periodic[axis] && !in_plane && box.size[axis] < 2.01 * clump.shape->bounding_radius)
         throw InputError(
-            fmt::format("The box is {:g} m along its periodic axis {}; it must be longer than clump {}, {:g} m, "
-                        "so that no clump touches itself.",
+            fmt::format("The box is {:g} m along its periodic axis {}; it must be longer than clump {}, {:g} m, or the "
+                        "clump touches itself.",
                         box.size[axis], "xyz"[axis], clump.id, 2.01 * clump.shape->bounding_radius));
     }
 }

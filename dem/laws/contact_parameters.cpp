@@ -36,23 +36,21 @@ static void describe(SectionVisitor& visit, ContactDuration& duration) {
 }
 
 static void describe_stiffness(SectionVisitor& visit, StiffnessKeys& stiffness, const OnlyIf& linear) {
-  visit.section(
-      "duration", stiffness.duration,
-      {.meaning = "of a collision, half a period of its spring, in place of normal_stiffness: of the lightest "
-                  "two free grains; in s, or {fluid_steps: 40}; default of grains in a fluid: 4 steps of it "
-                  "for each cell of the smallest diameter, or less where overlaps would be too large",
-       .shorthand = "seconds",
-       .expected = "a number in s above 0, for example 0.0016, or {fluid_steps: 40}",
-       .only_if = linear});
+  visit.section("duration", stiffness.duration,
+                {.meaning = "of a collision of the two lightest free grains, half a period of its spring, in place of "
+                            "normal_stiffness; in s, or {fluid_steps: 40}; default in a fluid: 4 fluid steps for each "
+                            "cell of the smallest diameter, or less where overlaps would be too large",
+                 .shorthand = "seconds",
+                 .expected = "a number in s above 0, for example 0.0016, or {fluid_steps: 40}",
+                 .only_if = linear});
   visit.real("normal_stiffness", stiffness.normal,
              {.unit = "N/m",
-              .meaning = "of the normal spring; default: by the duration, without a fluid 20000",
+              .meaning = "of the normal spring; default: from the duration, without a fluid 20000",
               .above = 0.0,
               .example = 20000.0,
               .only_if = linear});
   visit.require(!(stiffness.duration && stiffness.normal), "normal_stiffness",
-                "the stiffness is that with which a collision lasts as long as contact.duration says; give one of the "
-                "two");
+                "contact.duration already sets the stiffness; give one of the two");
   visit.real("tangential_stiffness", stiffness.tangential,
              {.unit = "N/m",
               .meaning = "of the tangential spring; default: 2/7 of the normal one",
@@ -80,14 +78,12 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
              {.meaning = "of grains and walls", .at_least = 0.0, .at_most = 0.5, .only_if = elastic});
   visit.real("tangential_damping", contact.tangential_damping,
              {.meaning = "tangential over normal damping coefficient", .at_least = 0.0});
-  visit.real(
-      "restitution", contact.restitution,
-      {.meaning =
-           "coefficient of restitution of a dry collision (in a fluid slow ones are stopped by the film between the "
-           "grains); or give damping",
-       .above = 0.0,
-       .at_most = 1.0,
-       .example = 0.93});
+  visit.real("restitution", contact.restitution,
+             {.meaning = "coefficient of restitution of a dry collision (in a fluid the film between the grains damps "
+                         "slow ones critically); or give damping",
+              .above = 0.0,
+              .at_most = 1.0,
+              .example = 0.93});
   visit.real("damping", contact.damping,
              {.unit = "kg/s",
               .meaning = "of the dashpot across a contact, in place of restitution",
@@ -100,14 +96,13 @@ void describe(SectionVisitor& visit, ContactParameters& contact, StiffnessKeys& 
   visit.real("wall_friction", contact.wall_friction,
              {.meaning = "coefficient between grain and wall", .at_least = 0.0});
   visit.real("kinetic_friction_ratio", contact.kinetic_friction_ratio,
-             {.meaning = "kinetic over static friction: of contacts that slide over that of contacts that stick",
+             {.meaning = "kinetic over static friction: coefficient of sliding contacts over that of sticking ones",
               .above = 0.0,
               .at_most = 1.0,
               .example = 0.8});
-  visit.real(
-      "rolling_friction", contact.rolling_friction,
-      {.meaning = "moment against rolling over normal force and radius (R1 R2/(R1 + R2)), between grains; 0: none",
-       .at_least = 0.0});
+  visit.real("rolling_friction", contact.rolling_friction,
+             {.meaning = "rolling moment over normal force times radius R1 R2/(R1 + R2), between grains; 0: none",
+              .at_least = 0.0});
   visit.real("wall_rolling_friction", contact.wall_rolling_friction,
              {.meaning = "the same between grain and wall", .at_least = 0.0});
   visit.real("rolling_damping", contact.rolling_damping,

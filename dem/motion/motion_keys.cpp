@@ -24,8 +24,8 @@ static void describe(SectionVisitor& visit, RotationKeys& rotation) {
 
 void describe(SectionVisitor& visit, MotionKeys& motion) {
   visit.vec3("velocity", motion.velocity, {.unit = "m/s", .meaning = "constant"});
-  visit.section("oscillation", motion.oscillation, {.meaning = "on top of the velocity"});
-  visit.section("rotation", motion.rotation, {.meaning = "about an axis that moves along"});
+  visit.section("oscillation", motion.oscillation, {.meaning = "added to the velocity"});
+  visit.section("rotation", motion.rotation, {.meaning = "about an axis that moves with the body"});
 }
 
 PrescribedMotion prescribed_motion(const MotionKeys& keys) {

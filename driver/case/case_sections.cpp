@@ -39,7 +39,7 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
   visit.choice<GravityMode>(
       "mode", gravity.mode,
       {{GravityMode::reduced, "reduced", "hydrostatic pressure left out"},
-       {GravityMode::full, "full", "in the fluid, and buoyancy from it"},
+       {GravityMode::full, "full", "hydrostatic pressure in the fluid, and buoyancy from it"},
        {GravityMode::balanced, "balanced",
         "in a periodic box, the weight of the grains carried by a mean pressure gradient"}},
       {.meaning = "how the weight of the resting fluid is treated",
@@ -47,12 +47,11 @@ static void describe_gravity(SectionVisitor& visit, GravityCase& gravity, bool w
 }
 
 static void describe(SectionVisitor& visit, FlowCase& flow) {
-  visit.real(
-      "shields_number", flow.shields_number,
-      {.meaning = "of the reference grain, with the settled bed's depth or, between side walls, hydraulic radius; "
-                  "gives gravity.slope, or with a slope the depth",
-       .above = 0.0,
-       .example = 0.05});
+  visit.real("shields_number", flow.shields_number,
+             {.meaning = "of the reference grain, by the depth over the settled bed or, between side walls, the "
+                         "hydraulic radius; gives gravity.slope, or with a slope the depth",
+              .above = 0.0,
+              .example = 0.05});
   visit.real("depth", flow.depth,
              {.unit = "m",
               .meaning = "of the water above the settled bed; gives the height of the box, where domain.size has only "
@@ -63,14 +62,14 @@ static void describe(SectionVisitor& visit, FlowCase& flow) {
 
 static void describe_sources(SectionVisitor& visit, InitialFromCase& from, const OnlyIf& of_fluid, bool with_grains) {
   visit.text("run", from.run,
-             {.meaning = "run folder or checkpoint, relative to this file, of which fields are taken",
+             {.meaning = "run folder or checkpoint, relative to this file, from which `fields` are taken",
               .example = "../other/run"});
   visit.text("grains", from.grains,
-             {.meaning = "the same, of which the grains are taken",
+             {.meaning = "the same, for the grains",
               .example = "../bed/run",
               .only_if = {with_grains, "system: fluid has no grains; remove the key"}});
   visit.text("fluid", from.fluid,
-             {.meaning = "the same, of which the fluid is taken",
+             {.meaning = "the same, for the fluid",
               .example = "../flow/run",
               .only_if = {of_fluid.holds, "there is no fluid in this case; remove the key"}});
   visit.require(!from.run || !from.each(), "run", "give either run, with initial.fields, or grains and fluid");
@@ -82,8 +81,8 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, System
   const OnlyIf of_fluid = only_with_fluid(system);
   const bool with_fluid = of_fluid.holds, with_grains = system != SystemKind::fluid;
   visit.section("from",
-                {.meaning = "the state of other runs to begin from: one run folder or checkpoint (or run: that), with "
-                            "fields, or one for the grains and one for the fluid; {}: none",
+                {.meaning = "state of other runs to begin from: one run folder or checkpoint (short for run: PATH), "
+                            "with fields, or one each for grains and fluid; {}: none",
                  .shorthand = "run",
                  .expected = "a run folder or checkpoint"},
                 [&](SectionVisitor& inside) { describe_sources(inside, initial.from, of_fluid, with_grains); });
@@ -93,7 +92,7 @@ static void describe_initial(SectionVisitor& visit, InitialCase& initial, System
   if (with_grains) fields.push_back({InitialField::grains, "grains", "as many as the populations have"});
   visit.choice_list<InitialField>(
       "fields", initial.fields, fields,
-      {.meaning = "what is taken from the one run",
+      {.meaning = "what is taken from the run in `from`",
        .only_if = {!initial.from.each(), "from says which run each field is taken from; remove this key"}});
   visit.section("fluid", initial.fluid,
                 {.meaning = "velocity at the start: rest, uniform, linear_profile or log_profile",
@@ -128,14 +127,15 @@ static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, b
                                   {.meaning = "action when a diagnostic leaves its bounds (docs/stability.md)"});
   visit.section(
       "until_at_rest", run.until_at_rest,
-      {.meaning = "the run ends when the grains are at rest (looked at every 200 steps), or at run.until",
+      {.meaning = "the run ends when the grains are at rest (checked every 200 steps), or at run.until",
        .only_if = {!with_fluid, "grains in a fluid are never at rest; remove the section or set system: grains"}});
   visit.real(
       "ramp", run.ramp,
       {.unit = "s",
-       .meaning = "over which gravity, on fluid and grains, rises smoothly from zero; 0: full gravity from the start",
+       .meaning =
+           "time over which gravity, on fluid and grains, rises smoothly from zero; 0: full gravity from the start",
        .at_least = 0.0,
-       .only_if = {with_fluid, "without a fluid there is no column of water that would ring; remove the key"}});
+       .only_if = {with_fluid, "a ramp avoids pressure waves in a fluid, and there is none; remove the key"}});
   visit.real("time_step", run.time_step,
              {.unit = "s",
               .meaning = "of the grains; default: 1/50 of the shortest contact",
@@ -159,13 +159,13 @@ OnlyIf belonging(SystemKind system) {
 
 static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, SystemKind system) {
   const bool with_grains = system != SystemKind::fluid;
-  visit.real("reference_diameter", analysis.reference_diameter,
-             {.unit = "m",
-              .meaning = "d of q*, the Shields number and the speed that counts as moving; default: half of the volume "
-                         "of all free grains is finer",
-              .above = 0.0,
-              .example = 5e-3,
-              .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
+  visit.real(
+      "reference_diameter", analysis.reference_diameter,
+      {.unit = "m",
+       .meaning = "d in q*, the Shields number and the moving speed; default: median by volume of all free grains",
+       .above = 0.0,
+       .example = 5e-3,
+       .only_if = {with_grains, "system: fluid has no grains; remove the key or set system: resolved"}});
   analysis.observers.for_each([&](auto& keys) {
     using Keys = std::decay_t<decltype(*keys)>;
     visit.section(Keys::section, keys, {.meaning = Keys::meaning, .only_if = belonging<Keys>(system)});
@@ -177,7 +177,7 @@ static void describe_analysis(SectionVisitor& visit, AnalysisCase& analysis, Sys
 
 static void describe(SectionVisitor& visit, DisksCase& disks) {
   visit.real("thickness", disks.thickness,
-             {.unit = "m", .meaning = "along y: gives their mass", .required = true, .above = 0.0, .example = 5e-3});
+             {.unit = "m", .meaning = "along y; sets their mass", .required = true, .above = 0.0, .example = 5e-3});
 }
 
 static void describe(SectionVisitor& visit, SteadyCase& steady) {
@@ -197,7 +197,7 @@ static void describe_column_run(SectionVisitor& visit, RunCase& run) {
                 {.meaning = "the run ends when the column is steady, or at run.until; no keys: {}"});
   visit.real("time_step", run.time_step,
              {.unit = "s",
-              .meaning = "between figures, and looks whether the column is steady; the equations are integrated with "
+              .meaning = "between results and checks whether the column is steady; the equations are integrated in "
                          "steps of their own; default: 5",
               .above = 0.0,
               .example = 5.0});
@@ -209,13 +209,13 @@ static void describe_column(SectionVisitor& visit, Case& c) {
   for (const char* section :
        {"domain", "disks", "walls", "contact", "model_fluid", "coupling", "initial", "solids", "supplies", "sinks"})
     visit.not_here(section, no_box);
-  visit.not_here("analysis", "system: continuum shows all it knows in series.csv and profiles.h5; remove the section");
+  visit.not_here("analysis", "system: continuum writes all results to series.csv and profiles.h5; remove the section");
   visit.section("fluid", c.continuum.fluid, {.meaning = "properties of the fluid", .required = true});
   visit.section("grains", c.continuum.grains, {.meaning = "properties of the grains", .required = true});
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, false); });
   visit.section("column", c.continuum.column, {.meaning = "heights of water and bed", .required = true});
-  visit.section("closures", c.continuum.closures, {.meaning = "what the two phases exchange and resist with"});
+  visit.section("closures", c.continuum.closures, {.meaning = "constitutive laws of the two phases"});
   visit.section("creep", c.continuum.creep,
                 {.meaning = "slow flow of the grains below the surface, by granular fluidity; no keys: {}"});
   visit.section("run", {.meaning = "duration and time integration", .required = true},
@@ -251,7 +251,7 @@ void describe(SectionVisitor& visit, Case& c) {
                                      "zhang2022` shows them",
                                      preset_names()),
               .example = "zhang2022"});
-  visit.text("name", c.name, {.meaning = "what the run is called in its output"});
+  visit.text("name", c.name, {.meaning = "name of the run in its output"});
   if (c.system == SystemKind::continuum) {
     describe_column(visit, c);
     return;
@@ -264,7 +264,7 @@ void describe(SectionVisitor& visit, Case& c) {
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   visit.section("flow", c.flow,
-                {.meaning = "the flow over the bed that the grains make, in place of numbers that follow from it",
+                {.meaning = "the flow over the settled bed, in place of slope or height, which follow from it",
                  .only_if = {c.system == SystemKind::resolved,
                              "only system: resolved has a bed under water; remove the section"}});
   visit.section("disks", c.disks,
@@ -272,8 +272,8 @@ void describe(SectionVisitor& visit, Case& c) {
                  .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});
   const OnlyIf of_walls =
       c.system == SystemKind::model_fluid
-          ? OnlyIf{false, "beside them the model fluid would flow as where grains are missing; remove the section"}
-          : OnlyIf{!with_fluid, "with a fluid there are only the faces of the box; remove the section"};
+          ? OnlyIf{false, "the model fluid takes a wall for missing grains; remove the section"}
+          : OnlyIf{!with_fluid, "with a fluid only the faces of the box are walls; remove the section"};
   visit.list("walls", c.walls, {.meaning = "solid planes, in addition to the faces of the box", .only_if = of_walls});
   visit.list("grains", c.grains, {.meaning = "populations of grains", .required = !with_fluid, .only_if = of_grains});
   visit.require(with_fluid || !c.grains.empty(), "grains", "a run of dry grains needs at least one population of them");
@@ -299,7 +299,7 @@ void describe(SectionVisitor& visit, Case& c) {
                 [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, c.system); });
-  visit.list("solids", c.solids, {.meaning = "bodies that fluid and grains meet"});
+  visit.list("solids", c.solids, {.meaning = "bodies in the way of fluid and grains"});
   visit.require(c.solids.empty() || !c.disks, "solids",
                 "disks move in a plane, which a solid would push them out of; give walls");
   visit.section("run", {.meaning = "duration and time integration", .required = true},

@@ -96,20 +96,18 @@ static void describe_boundaries(SectionVisitor& visit, BoundaryKeys& keys, bool 
 }
 
 void describe_domain(SectionVisitor& visit, DomainCase& domain, bool with_fluid) {
-  visit.vec3(
-      "size", domain.size,
-      {.unit = "m",
-       .meaning =
-           "length streamwise (x), cross-stream (y), upwards (z); the last follows from a section flow that gives "
-           "the depth",
-       .required = true,
-       .above = 0.0,
-       .example = 0.1,
-       .fewest_numbers = 2});
+  visit.vec3("size", domain.size,
+             {.unit = "m",
+              .meaning = "length streamwise (x), cross-stream (y), upwards (z); leave out the last where the section "
+                         "flow gives the depth",
+              .required = true,
+              .above = 0.0,
+              .example = 0.1,
+              .fewest_numbers = 2});
   visit.real("spacing", domain.spacing,
              {.unit = "m",
-              .meaning = "side of a cell, which divides every length; without a fluid it is only the grid by which the "
-                         "box is divided among ranks",
+              .meaning = "side of a cell, which divides every length; without a fluid only the grid by which the box "
+                         "is divided among ranks",
               .required = true,
               .above = 0.0,
               .example = 0.5e-3});

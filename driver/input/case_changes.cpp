@@ -167,7 +167,7 @@ void refuse_changes_of_state(const std::vector<CaseChange>& changes, bool dry) {
     if (places_a_wall(change.key, dry))
       throw InputError(
           told(change) +
-          ". A wall or a solid is where its motion since the start has brought it, and would jump; set the key back, "
+          ". A wall or a solid is where its motion has brought it since the start, and would jump; set the key back, "
           "or begin a new run from that one with initial.from, with the wall or the solid where it is now.");
     if (is_in_the_checkpoint(change.key))
       throw InputError(

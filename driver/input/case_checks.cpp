@@ -62,11 +62,11 @@ void check_resolution(const Case& c, const io::YamlDocument& document) {
 void check_lattice_velocity(const Case& c, const io::YamlDocument& document, const std::string& key, double velocity) {
   const double lattice_velocity = velocity / units_of(c).velocity();
   if (lattice_velocity <= largest_lattice_velocity * (1.0 + whole_number_tolerance)) return;
-  throw document.error(key,
-                       fmt::format("{:.4g} m/s would be {:.3g} cells a step, more than {}; give a fluid.time_step of "
-                                   "at most {} s",
-                                   velocity, lattice_velocity, largest_lattice_velocity,
-                                   at_most_text(largest_lattice_velocity * c.domain.spacing / velocity, 3)));
+  throw document.error(
+      key,
+      fmt::format("{:.4g} m/s would be {:.3g} cells per step, more than {}; give a fluid.time_step of at most {} s",
+                  velocity, lattice_velocity, largest_lattice_velocity,
+                  at_most_text(largest_lattice_velocity * c.domain.spacing / velocity, 3)));
 }
 
 // A rotation is taken about the nearest image of the axis, so that a solid must not reach across half a periodic box.
@@ -97,7 +97,7 @@ void check_solids(const Case& c, const io::YamlDocument& document) {
     if (solid.motion && has_fluid(c)) check_motion_in_fluid(c, document, n);
     if (c.grains.empty() && (solid.friction || solid.rolling_friction))
       throw document.error(fmt::format("solids.{}.{}", n, solid.friction ? "friction" : "rolling_friction"),
-                           "there are no grains that would feel it; remove it");
+                           "there are no grains on which it acts; remove it");
   }
   check_solid_extents(c, document);
 }
@@ -112,8 +112,8 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
   if (c.filled_in.profile.shear_velocity && *profile.shear_velocity == 0.0)
     throw document.error("initial.fluid.log_profile",
-                         "nothing drives the water along the bed, so that its shear velocity does not follow from the "
-                         "case; give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
+                         "nothing drives the water along the bed, so its shear velocity does not follow from the case; "
+                         "give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
   const double depth = c.domain.size[2] - *profile.bed_height;
   if (depth > 0.0 && depth <= *profile.roughness)
     throw document.error(
@@ -157,7 +157,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
                                      fluid_time_step(c)));
   if (c.fluid.mean_velocity && !periodic_axes(c.domain)[0])
     throw document.error("fluid.mean_velocity",
-                         "faces across x that are not periodic decide how much flows, and a force that steers against "
+                         "faces across x that are not periodic decide how much flows, and a force that works against "
                          "them grows without limit; remove the key, or make domain.boundaries.x periodic");
   if (c.fluid.mean_velocity)
     check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
@@ -198,10 +198,9 @@ void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty() || balancing_acceleration(c).isZero(0.0))
     throw document.error("gravity.mode", "there is no weight of free grains to balance; set mode: reduced");
   if (!c.supplies.empty() || !c.sinks.empty())
-    throw document.error(
-        "gravity.mode",
-        "balanced gravity carries the weight of the grains of the start, and supplies and sinks change "
-        "it; remove them, or set mode: reduced");
+    throw document.error("gravity.mode",
+                         "balanced gravity carries the weight of the initial grains, which supplies and sinks change; "
+                         "remove them, or set mode: reduced");
 }
 
 void check_gravity(const Case& c, const io::YamlDocument& document) {
@@ -324,10 +323,9 @@ void check_model_fluid(const Case& c, const io::YamlDocument& document) {
     throw document.error("domain.boundaries",
                          "the model fluid takes a side wall for missing grains; make x and y periodic");
   if (c.model_fluid.ramp && c.run.until_at_rest)
-    throw document.error(
-        "run.until_at_rest",
-        "a rising Shields number starts from grains at rest, which would end the run at once; remove the "
-        "section, or model_fluid.ramp");
+    throw document.error("run.until_at_rest",
+                         "a rising Shields number starts from grains at rest, where the section would end the run at "
+                         "once; remove the section, or model_fluid.ramp");
   at_place(document, "model_fluid", [&] { check(c.model_fluid, mean_grain(c), -gravity.z()); });
 }
 

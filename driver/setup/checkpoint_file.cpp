@@ -87,9 +87,7 @@ void about_file(const std::filesystem::path& path, Work&& work) {
     throw InputError(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const std::logic_error&) {  // of a vector or an archive
     throw DamagedFile(fmt::format(
-        "{}: some of its data have another shape than belongs to them, the file is damaged; take an earlier "
-        "checkpoint.",
-        path.string()));
+        "{}: some of its data have the wrong shape, the file is damaged; take an earlier checkpoint.", path.string()));
   }
 }
 
@@ -128,10 +126,10 @@ RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::pa
   require_checksums(archive);
   if (const std::int64_t format = archive.has("run/format") ? archive.integer_attribute("run/format") : 1;
       format > checkpoint_format)
-    throw InputError(fmt::format(
-        "{} was written by version {} in format {}, and this is version {}, which reads formats up to {}; go "
-        "on with that version.",
-        path.string(), archive.text_attribute("run/version"), format, version_number(), checkpoint_format));
+    throw InputError(
+        fmt::format("{} was written by version {} in format {}, and this is version {}, which reads formats up to {}; "
+                    "continue with that version.",
+                    path.string(), archive.text_attribute("run/version"), format, version_number(), checkpoint_format));
   const std::string saved = archive.text_attribute("run/system");
   if (saved != name_of(c.system))
     throw InputError(fmt::format("{} holds a run with system: {}, but this case has system: {}.", path.string(), saved,

@@ -50,8 +50,8 @@ std::string gap_after(const std::vector<double>& times, double continue_from) {
   for (std::size_t n = times.size(); n-- > 1 && n + 3 >= times.size();)
     interval = std::max(interval, times[n] - times[n - 1]);
   if (interval == 0.0 || continue_from < times.back() + 1.5 * interval) return {};
-  return fmt::format("the last row of series.csv is that of {:g} s, and those from there to {:g} s are missing",
-                     times.back(), continue_from);
+  return fmt::format("the rows of series.csv end at {:g} s, and those from there to {:g} s are missing", times.back(),
+                     continue_from);
 }
 
 std::string cannot_write_series(const std::filesystem::path& path) {

@@ -55,7 +55,7 @@ std::string way_out(const std::string& holder, const std::filesystem::path& file
   if (at == std::string::npos) return {};
   const std::string host = holder.substr(at + before_host.size());
   if (host == name_of_this_host()) return {};
-  return fmt::format("; if {} is down, so that nothing can be writing from there, remove its lock: rm {}", host,
+  return fmt::format("; if {} is down and nothing can be writing from there, remove its lock: rm {}", host,
                      shell_word(file.string()));
 }
 

@@ -26,7 +26,7 @@ void describe_region(SectionVisitor& visit, FluidRegionKeys& keys) {
                              {FluidRegion::slice_y, "slice_y"},
                              {FluidRegion::slice_z, "slice_z"}},
                             {.meaning = "the whole box, or the middle layer of cells across an axis"});
-  visit.section("box", keys.box, {.meaning = "the cells with their centre in it, in place of a region"});
+  visit.section("box", keys.box, {.meaning = "the cells whose centre is in it, in place of a region"});
   visit.section("plane", keys.plane, {.meaning = "a layer of cells, in place of a region"});
   visit.integer("stride", keys.stride, {.meaning = "shows every n-th cell along each axis", .at_least = 1});
   const int ways = (keys.region != FluidRegion::whole) + keys.box.has_value() + keys.plane.has_value();

@@ -28,7 +28,7 @@ const std::vector<NamedChoice<GrainField>>& grain_fields() {
       {GrainField::fluid_force, "fluid_force", "N"},
       {GrainField::fluid_stress, "fluid_stress", "Pa, xx, xy, xz, yx, ..."},
       {GrainField::population, "population", "its number in grains, from 0"},
-      {GrainField::held, "held", "0 free, 1 velocity held, 2 angular velocity held, 3 both, as of fixed grains"},
+      {GrainField::held, "held", "0 free, 1 velocity held, 2 angular velocity held, 3 both, as for fixed grains"},
       {GrainField::density, "density", "kg/m^3"},
       {GrainField::orientation, "orientation", "of clumps, a unit quaternion w, x, y, z"}};
   return fields;

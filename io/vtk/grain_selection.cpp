@@ -15,7 +15,7 @@ void describe_selection(SectionVisitor& visit, GrainSelectionKeys& keys) {
   visit.integer_list("ids", keys.ids, {.meaning = "only grains with these ids; default: any", .at_least = 0});
   visit.integer("population", keys.population,
                 {.meaning = "only grains of this population, by its number in grains; default: any", .at_least = 0});
-  visit.section("box", keys.box, {.meaning = "only grains with their centre in it at the time of the frame"});
+  visit.section("box", keys.box, {.meaning = "only grains whose centre is in it at the time of the frame"});
 }
 
 namespace {

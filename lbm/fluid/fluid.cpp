@@ -25,10 +25,9 @@ const CollisionParameters& checked(const CollisionParameters& parameters) {
                     "time step.",
                     parameters.relaxation_time));
   if (parameters.with_bulk() && !(parameters.bulk_relaxation_time > 0.5))
-    throw InputError(
-        fmt::format("The bulk relaxation time is {}, but a fluid needs more than 1/2; raise it, or give 0 for that of "
-                    "the shear.",
-                    parameters.bulk_relaxation_time));
+    throw InputError(fmt::format(
+        "The bulk relaxation time is {}, but a fluid needs more than 1/2; raise it, or give 0 for that of shear.",
+        parameters.bulk_relaxation_time));
   return parameters;
 }
 

@@ -20,8 +20,8 @@ constexpr double smallest_bounced_fraction = 1e-6;  // lets a wall without shear
 void check(const FaceCondition& wall, int axis, const char* name) {
   if (wall.type == FaceType::moving && wall.velocity[axis] != 0.0)
     throw InputError(
-        fmt::format("The moving wall at {} has a velocity of {} cells a step across its own plane; give it "
-                    "zero there, or make the face a velocity inlet.",
+        fmt::format("The moving wall at {} has a velocity of {} cells per step across its own plane; give it zero "
+                    "there, or make the face a velocity inlet.",
                     name, wall.velocity[axis]));
   if (wall.type == FaceType::navier_slip && !(wall.slip_length >= 0.0))
     throw InputError(

@@ -100,14 +100,14 @@ TEST(GrainFill, Refusals) {
             std::string::npos);
   EXPECT_NE(refused({no_count}).find("give a whole number, for example 100, solid_fraction, fill or"),
             std::string::npos);
-  EXPECT_NE(refused({no_count, "grains.0.fill={}"}).find("give either the depth in m or its number of layers"),
+  EXPECT_NE(refused({no_count, "grains.0.fill={}"}).find("give either the depth in m or the number of layers"),
             std::string::npos);
   EXPECT_NE(
       refused({no_count, "grains.0.fill={depth: 0.02, layers: 2}"}).find("grains.0.fill.depth = 0.02: give either"),
       std::string::npos);
   EXPECT_NE(refused({no_count, "grains.0.fill={depth: 0.06}"})
-                .find("grains.0.fill.depth = 0.06: a bed of 0.06 m is deeper than the 0.05 m of its room; give at most "
-                      "0.05 m, or more room"),
+                .find("grains.0.fill.depth = 0.06: a bed of 0.06 m is deeper than its region of 0.05 m; give at most "
+                      "0.05 m, or a higher region"),
             std::string::npos);
   EXPECT_NE(refused({no_count, "grains.0.fill={layers: 11}"}).find("at most 10.1 layers of 0.00495 m"),
             std::string::npos);

@@ -43,9 +43,8 @@ INSTANTIATE_TEST_SUITE_P(
             {"fluid.collision = \"mrt\": expected one of bgk, trt, trt_at_bodies."}},
         Bad{"collision_removed",
             {"fluid.collision=regularised"},
-            {"fluid.collision = \"regularised\": it was unstable along walls and is gone; write trt_at_bodies, or "
-             "remove "
-             "the key."}},
+            {"fluid.collision = \"regularised\": it was unstable along walls and has been removed; write "
+             "trt_at_bodies, or remove the key."}},
         Bad{"subgrid_constant_of_zero",
             {"fluid.smagorinsky_constant=0"},
             {"fluid.smagorinsky_constant = 0: a constant of zero is no subgrid model; write subgrid_model: none."}},
@@ -59,8 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
              "law_of_the_wall, slip_law_of_the_wall, velocity_inlet, pressure_outlet."}},
         Bad{"face_as_printed",
             {"domain.boundaries.top=law_of_the_wall_as_printed"},
-            {"domain.boundaries.top.type = \"law_of_the_wall_as_printed\": the law with the coefficient that is "
-             "printed is "
+            {"domain.boundaries.top.type = \"law_of_the_wall_as_printed\": the law with the printed coefficient is "
              "{type: slip_law_of_the_wall, coefficient: 2.35}; write that."}},
         Bad{"face_on_node",
             {"domain.boundaries.top={type: navier_slip, slip_length: 1e-4, on_node: true}"},
@@ -98,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"top", "a moving wall moves in its own plane"}},
         Bad{"wall_too_fast",
             {"domain.boundaries.top={type: moving, velocity: [90, 0, 0]}"},
-            {"domain.boundaries", "cells a step"}},
+            {"domain.boundaries", "cells per step"}},
         Bad{"control_too_quick",
             {"fluid.mean_velocity={velocity: 0.3, response_time: 1e-5}"},
             {"fluid.mean_velocity.response_time", "give at least"}},
@@ -125,11 +123,11 @@ INSTANTIATE_TEST_SUITE_P(
             {"domain.boundaries.x_high", "would jam at this face", "at least half as deep"}},
         Bad{"a_supply_without_a_rate",
             {"supplies=[{population: 0, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},
-            {"supplies.0.rate", "give one of rate in grains/s"}},
+            {"supplies.0.rate", "give exactly one of rate in grains/s"}},
         Bad{"a_supply_with_two_rates",
             {"supplies=[{population: 0, rate: 1, mass_rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, "
              "0.07]}}]"},
-            {"supplies.0.rate", "give one of rate in grains/s"}},
+            {"supplies.0.rate", "give exactly one of rate in grains/s"}},
         Bad{"a_supply_of_no_population",
             {"supplies=[{population: 3, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},
             {"supplies.0.population", "there is no such population"}},
@@ -146,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"a_supply_above_its_region",
             {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.02]}, above_bed: "
              "{lower: 0.021, upper: 0.03}}]"},
-            {"supplies.0.above_bed.lower", "that is above the region, which ends at 0.02 m"}},
+            {"supplies.0.above_bed.lower", "this is above the region, which ends at 0.02 m"}},
         Bad{"a_supply_upside_down",
             {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0], upper: [0.06, 0.01, 0.07]}, above_bed: "
              "{lower: 0.01, upper: 0.005}}]"},
@@ -299,8 +297,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"contact.restitution = 0.93: the loss in a collision is given twice"}},
         Bad{"stiffness_and_duration",
             {"contact.normal_stiffness=700", "contact.duration=1.0e-3"},
-            {"contact.normal_stiffness = 700: the stiffness is that with which a collision lasts as long as "
-             "contact.duration says; give one of the two"}},
+            {"contact.normal_stiffness = 700: contact.duration already sets the stiffness; give one of the two"}},
         Bad{"duration_in_words",
             {"contact.duration=long"},
             {"contact.duration = \"long\": expected a number in s above 0"}},

@@ -139,7 +139,7 @@ output: {series: {every: 0.01}, checkpoint: {every: 0.05, keep: 2}}
         newest = self.last_checkpoint(folder)
         with h5py.File(newest, "r+") as file:
             file["run"].attrs.modify("format", 77)
-        self.assert_refused("run", self.case, "--restart", folder, words=["format 77", "go on with that version"])
+        self.assert_refused("run", self.case, "--restart", folder, words=["format 77", "continue with that version"])
 
     def test_leftovers_of_killed_writes_go(self):
         folder = self.copy("leftover")

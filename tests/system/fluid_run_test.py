@@ -297,7 +297,7 @@ output:
                             "radius: 1}}", words=["solids.0", "two shapes"])
         self.assert_refused("check", self.case, "--set", "solids.0={scale: 2}", words=["solids.0", "no shape"])
         self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [0.1, 0, 0]}",
-                            words=["solids.0.motion", "0.2 cells a step", "fluid.time_step"])
+                            words=["solids.0.motion", "0.2 cells per step", "fluid.time_step"])
         self.assert_refused(
             "check", self.case, "--set", "solids.1.friction=0.3", words=["solids.1.friction", "no grains"]
         )

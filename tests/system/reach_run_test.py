@@ -110,7 +110,7 @@ class ReachRun(ProgramTest):
         for setting, words in (
             ("analysis.reach.sections=1", ["analysis.reach.sections", "at least 2"]),
             ("analysis.reach.sections=1001", ["analysis.reach.sections", "at most 1000"]),
-            ("analysis.reach.record_every=0.001", ["analysis.reach.record_every", "at least one look"]),
+            ("analysis.reach.record_every=0.001", ["analysis.reach.record_every", "at least one observation"]),
         ):
             self.assert_refused("run", self.case, "--set", setting, words=words)
         self.run_well("run", self.case, "--out", self.folder / "one", "--until", "0.2")

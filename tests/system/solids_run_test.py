@@ -85,7 +85,7 @@ solids:
 
     def test_what_cannot_be_is_refused(self):
         self.assert_refused("check", self.case, "--set", "solids.0.motion={velocity: [3, 0, 0]}",
-                            words=["solids.0.motion", "0.4 cells a step", "fluid.time_step"])
+                            words=["solids.0.motion", "0.4 cells per step", "fluid.time_step"])
         self.assert_refused("check", self.case, "--set",
                             "solids.1.motion={rotation: {point: [0, 0.0075, 0.02], angular_velocity: 1}}",
                             words=["solids.1.motion.rotation", "would meet its own image along x"])

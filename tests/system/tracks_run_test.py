@@ -144,7 +144,7 @@ analysis:
                             words=["analysis.tracks.grains.1", "ids from 0 to 7"])
         self.assert_refused("run", self.case, "--set", "analysis.tracks.grains=[1, 1]", words=["named twice"])
         self.assert_refused("run", self.case, "--set", "analysis.tracks.grains=[-1]", words=["at least 0"])
-        self.assert_refused("run", self.case, "--set", "analysis.tracks.one_in=2", words=["give one of them"])
+        self.assert_refused("run", self.case, "--set", "analysis.tracks.one_in=2", words=["give one of the two"])
         self.assert_refused("run", self.case, "--set", "grains=[]", words=["analysis.tracks", "no grains to watch"])
 
 

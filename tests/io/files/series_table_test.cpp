@@ -60,9 +60,9 @@ TEST(SeriesTable, TellsThatRowsAreMissing) {
     return SeriesTable(MPI_COMM_WORLD, path, columns, continue_from).gap();
   };
   EXPECT_EQ(gap_from(0.399), "");
-  EXPECT_EQ(gap_from(0.6), rank_of(MPI_COMM_WORLD) == 0 ? "the last row of series.csv is that of 0.3 s, and those from "
-                                                          "there to 0.6 s are missing"
-                                                        : "");
+  EXPECT_EQ(gap_from(0.6), rank_of(MPI_COMM_WORLD) == 0
+                               ? "the rows of series.csv end at 0.3 s, and those from there to 0.6 s are missing"
+                               : "");
 }
 
 TEST(SeriesTable, RowsOfARunThatNoLongerWritesThemAreDropped) {

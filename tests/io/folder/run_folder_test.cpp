@@ -248,12 +248,11 @@ TEST_F(RunFolderTest, ASecondRunIsKeptOut) {
     EXPECT_NE(message.find("a run is writing there now (process "), std::string::npos) << message;
     EXPECT_EQ(message.find("rm "), std::string::npos) << message;  // whoever holds it is here
     put(path / FolderLock::file_name, "process 17 on node-that-is-down\n");
-    EXPECT_NE(
-        message_of<InputError>([&] { FolderLock second(path); })
-            .find("choose another folder with --out; if node-that-is-down is down, so that nothing can be writing from "
-                  "there, remove its lock: rm " +
-                  (path / FolderLock::file_name).string() + "."),
-        std::string::npos);
+    EXPECT_NE(message_of<InputError>([&] { FolderLock second(path); })
+                  .find("choose another folder with --out; if node-that-is-down is down and nothing can be writing "
+                        "from there, remove its lock: rm " +
+                        (path / FolderLock::file_name).string() + "."),
+              std::string::npos);
     FolderLock moved;
     moved = FolderLock(path.parent_path());
     EXPECT_THROW(FolderLock(path.parent_path()), InputError);
