@@ -79,10 +79,10 @@ public:
   bool needs_momentum() const override { return true; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
-  // maximum, 0 where there is no bed (no grains, or less than a diameter between them and the top); bed_stress (Pa): the
-  // driving stress there less that of side walls and solids (its largest where there is no bed); largest_difference (1): of the total stress from the driving stress less the side walls', over the bed
-  // stress; largest_difference_at (m); and of the sum of stresses, largest_difference_of_sum,
-  // largest_difference_of_sum_at.
+  // maximum, 0 where there is no bed (no grains, or less than a diameter between them and the top); bed_stress (Pa):
+  // the driving stress there less that of side walls and solids (its largest where there is no bed); largest_difference
+  // (1): of the total stress from the driving stress less the side walls', over the bed stress; largest_difference_at
+  // (m); and of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 

@@ -207,12 +207,12 @@ std::vector<std::string> StressBalance::remarks() const {
         ->value;
   };
   const char* where = value("bed_height") > 0.0 ? "on the bed" : "at most";
-  return {
-      fmt::format("largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa {}, at z = "
-                  "{:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
-                  at_sides ? " less the share of side walls and solids" : "", 100.0 * value("largest_difference"),
-                  value("bed_stress"), where, value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
-                  value("largest_difference_of_sum_at"))};
+  return {fmt::format(
+      "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa {}, at z = "
+      "{:.4g} m (of the sum of the stresses by volume shares {:.2g} %, at {:.4g} m)",
+      at_sides ? " less the share of side walls and solids" : "", 100.0 * value("largest_difference"),
+      value("bed_stress"), where, value("largest_difference_at"), 100.0 * value("largest_difference_of_sum"),
+      value("largest_difference_of_sum_at"))};
 }
 
 std::vector<Profile> StressBalance::profiles() const {

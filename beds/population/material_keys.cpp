@@ -63,7 +63,10 @@ void check(const MaterialKeys& material, const dem::ContactParameters& contact) 
 }
 
 dem::ContactParameters changed(dem::ContactParameters p, const MaterialKeys& material) {
-  p.normal_stiffness = material.normal_stiffness.value_or(p.normal_stiffness);
+  if (material.normal_stiffness) {
+    p.tangential_stiffness *= *material.normal_stiffness / p.normal_stiffness;
+    p.normal_stiffness = *material.normal_stiffness;
+  }
   p.tangential_stiffness = material.tangential_stiffness.value_or(p.tangential_stiffness);
   p.youngs_modulus = material.youngs_modulus.value_or(p.youngs_modulus);
   p.poisson_ratio = material.poisson_ratio.value_or(p.poisson_ratio);

@@ -52,7 +52,8 @@ void describe(SectionVisitor& visit, WallMaterialKeys& walls);
 // Throws KeyError unless it fits the law of `contact` and gives the loss, restitution or damping, as that does.
 void check(const MaterialKeys& material, const dem::ContactParameters& contact);
 
-// The contact with what the material changes.
+// The contact with what the material changes. A material with a normal stiffness alone has the tangential stiffness
+// that is the same share of it as in `contact`.
 dem::ContactParameters changed(dem::ContactParameters contact, const MaterialKeys& material);
 
 // Material of the walls; empty: each grain's own material.

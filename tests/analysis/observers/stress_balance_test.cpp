@@ -97,8 +97,8 @@ TEST(StressBalance, OfASlowFlowOverHeldSpheresIsTheWeightAbove) {
   EXPECT_GT(drag, 0.5 * bed_stress);
 }
 
-// Spheres held at the floor and just below the top of a shear cell: no flow goes over them, so the difference is a share
-// of the largest driving stress, not of the small one that the upper spheres leave above their middle.
+// Spheres held at the floor and just below the top of a shear cell: no flow goes over them, so the difference is a
+// share of the largest driving stress, not of the small one that the upper spheres leave above their middle.
 TEST(StressBalance, GrainsThatReachTheTopAreNoBed) {
   WaterBox box = viscous_box({18, 18, 24}, 9.0, 1.5);
   const double d = 5e-3, top = 24.0 * box.spacing;

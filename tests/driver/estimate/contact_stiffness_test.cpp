@@ -1,5 +1,6 @@
 #include "driver/estimate/contact_stiffness.hpp"
 
+#include "beds/population_seeds.hpp"
 #include "dem/laws/material.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/warnings/case_warnings.hpp"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -97,6 +99,26 @@ TEST(ContactStiffness, IsThatOfDryGrainsWithoutAFluid) {
   EXPECT_EQ(*soft.run.time_step, shortest_contact(soft) / 50.0);
   const Case given = read_text(defaults_yaml("grains"), {"contact.normal_stiffness=700"});
   EXPECT_NEAR(given.contact.tangential_stiffness, 200.0, 1e-12);
+}
+
+// Materials of another normal stiffness have the share of it, 2/7 or as given, that the section contact has.
+TEST(ContactStiffness, TangentialKeepsItsShareInOtherMaterials) {
+  const std::vector<std::string> others = {"contact.normal_stiffness=700", "grains.1.fixed=false",
+                                           "grains.1.contact={normal_stiffness: 350}",
+                                           "contact.walls={normal_stiffness: 1400}"};
+  const auto tangential = [](const Case& c) {
+    return std::array{beds::materials_of(c.contact, c.grains).back().tangential_stiffness,
+                      beds::wall_material_of(c.contact)->tangential_stiffness};
+  };
+  EXPECT_NEAR(tangential(read_text(flume, others))[0], 100.0, 1e-12);
+  EXPECT_NEAR(tangential(read_text(flume, others))[1], 400.0, 1e-12);
+  std::vector<std::string> given = others;
+  given.emplace_back("contact.tangential_stiffness=70");
+  EXPECT_NEAR(tangential(read_text(flume, given))[0], 35.0, 1e-12);
+  const Case as_run = testing::read_text(resolved_yaml(read_text(flume, others)));
+  EXPECT_NEAR(tangential(as_run)[1], 400.0, 1e-12);
+  given.emplace_back("grains.1.contact.tangential_stiffness=10");
+  EXPECT_NEAR(tangential(read_text(flume, given))[0], 10.0, 1e-12);
 }
 
 // 20 diameters of bed weigh 0.6 1550 9.8 0.1 = 911 Pa: with an overlap of 1 % k is that times 100 d.
