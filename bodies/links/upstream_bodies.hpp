@@ -15,8 +15,6 @@ class UpstreamBodies {
 public:
   static constexpr int capacity = 128;  // whole vectors of links, links_at_a_time each
 
-  int count() const { return count_; }
-
   void begin(int count) {
     CHECK(count <= capacity);
     count_ = count;

@@ -18,7 +18,6 @@ public:
   GhostedField(const Decomposition& decomposition, MPI_Comm communicator, int components, int width);
 
   const Index3& size() const { return size_; }  // owned cells
-  int components() const { return components_; }
 
   // The components of a cell; local coordinates, owned 0 .. size-1, ghosts from -width to size-1+width.
   double* at(int x, int y, int z) { return values_.data() + place(x, y, z); }

@@ -33,16 +33,13 @@ bool crosses(int i, const Index3& towards) {
 template <typename Real>
 Halo<Real>::Halo(const Decomposition& decomposition, MPI_Comm communicator, Populations<Real>& populations,
                  Walls<Real>& walls)
-    : decomposition_(decomposition),
-      populations_(populations),
-      walls_(walls),
-      block_(decomposition.block_of(rank_of(communicator))),
-      coordinates_(decomposition.coordinates_of(rank_of(communicator))) {
+    : populations_(populations), walls_(walls) {
   const int me = rank_of(communicator);
+  const Index3 here = decomposition.coordinates_of(me);
   // A message sent towards d arrives from -d: both lists run over the same d.
   for (const Index3& towards : neighbour_offsets()) {
-    const int to = decomposition.rank_at(plus(coordinates_, towards));
-    const int from = decomposition.rank_at(plus(coordinates_, minus(towards)));
+    const int to = decomposition.rank_at(plus(here, towards));
+    const int from = decomposition.rank_at(plus(here, minus(towards)));
     if (to >= 0) add_neighbour(to, towards, true);
     if (from >= 0) add_neighbour(from, towards, false);
   }

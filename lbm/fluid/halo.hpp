@@ -41,11 +41,8 @@ private:
   void add_population(std::vector<StridedRange>& ranges, int direction, const Index3& begin, const Index3& end);
   void add_wall_lines(std::vector<StridedRange>& ranges, const Index3& towards, bool sending);
 
-  const Decomposition& decomposition_;
   Populations<Real>& populations_;
   Walls<Real>& walls_;
-  Block block_;
-  Index3 coordinates_;
   std::vector<Message> messages_;  // the one to the own rank first, if any
   int self_ = -1;                  // index of that one
   PackedExchange exchange_;

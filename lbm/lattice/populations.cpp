@@ -19,10 +19,10 @@ Populations<Real>::Populations(const CellIndexing& indexing) : indexing_(indexin
   constexpr std::size_t line = 64;                          // bytes in a cache line
   constexpr std::size_t stagger = 9 * line / sizeof(Real);  // keeps the 19 streams out of each other's cache sets
   const std::size_t per_line = line / sizeof(Real);
-  stride_ = (indexing.count() + per_line - 1) / per_line * per_line + stagger;
+  const std::size_t stride = (indexing.count() + per_line - 1) / per_line * per_line + stagger;  // Reals
   // 38 streams over as many distant pages: huge pages keep them all in the TLB.
-  memory_ = in_huge_pages(stride_ * D3Q19::directions, Real(0));
-  for (int i = 0; i < D3Q19::directions; ++i) planes_[i] = memory_.get() + stride_ * i;
+  memory_ = in_huge_pages(stride * D3Q19::directions, Real(0));
+  for (int i = 0; i < D3Q19::directions; ++i) planes_[i] = memory_.get() + stride * i;
 }
 
 template class Populations<float>;

@@ -101,8 +101,6 @@ public:
     return sum;
   }
 
-  std::size_t bytes() const { return stride_ * D3Q19::directions * sizeof(Real); }
-
 private:
   Real* slot_of(int i, std::ptrdiff_t cell) {
     return arrangement_ == Arrangement::swapped ? planes_[D3Q19::opposite(i)] + cell
@@ -111,7 +109,6 @@ private:
 
   CellIndexing indexing_;
   Arrangement arrangement_ = Arrangement::swapped;
-  std::size_t stride_;  // Reals from one direction's plane to the next
   HugePages<Real> memory_;
   Real* planes_[D3Q19::directions];
 };
