@@ -88,7 +88,7 @@ private:
 
     void clear(int z) {
       plane = z;
-      size = pieces = 0;
+      size = pieces = narrow_count = 0;
     }
   };
   // Input and results of a batch.
