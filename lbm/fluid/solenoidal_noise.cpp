@@ -11,6 +11,7 @@ namespace thalweg::lbm {
 namespace {
 
 constexpr int longest_to_shortest = 4, fewest_cells_a_wave = 8;
+constexpr double round_off = 1e-20;  // more than sin(pi)^2
 
 // Purposes of the random numbers of a mode.
 enum Draw : std::uint64_t { number, sign = 3, phase = 6, polarisation };
@@ -31,9 +32,11 @@ double envelope_at(double s) {
 
 }  // namespace
 
-SolenoidalNoise::SolenoidalNoise(const NoiseBox& box, std::uint64_t seed) : box_(box) {
-  int through = 0;  // the axis along which every mode varies
-  while (through < 2 && !box.periodic[through]) ++through;
+SolenoidalNoise::SolenoidalNoise(const NoiseBox& box, std::uint64_t seed) {
+  // The axis along which every mode varies. Central differences see no wave in one or two cells.
+  const auto has_waves = [&box](int a) { return box.periodic[a] && box.cells[a] > 2; };
+  int through = 0;
+  while (through < 2 && !has_waves(through)) ++through;
   for (int a = 0; a < 3; ++a) {
     waves_[a].resize(static_cast<std::size_t>(box.cells[a] + 2) * modes);
     for (int c = -1; c <= box.cells[a]; ++c) {
@@ -63,7 +66,7 @@ SolenoidalNoise::SolenoidalNoise(const NoiseBox& box, std::uint64_t seed) : box_
     const double scale = std::sqrt(6.0 / modes);
     const double squared = difference.squaredNorm();
     amplitudes_[m] = Vec3::Zero();
-    if (squared > 0.0)
+    if (squared > round_off)
       amplitudes_[m] = scale / squared * direction_across(difference, random(polarisation)).cross(difference);
   }
 }

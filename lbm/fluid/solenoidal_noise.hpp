@@ -4,9 +4,10 @@
 //
 // with central differences for the curl, so that the divergence by central differences vanishes to round-off. e goes to
 // zero with the square of the distance to both ends of every axis that is not periodic, so that A, its slope and u'
-// vanish there. Every mode varies along the first periodic axis in whole periods, so that the mean of u' along every
-// line of that axis is zero to round-off, and a mean profile is left as it is. Modes are drawn from counter-based
-// random numbers of their own index: the same field on any number of ranks.
+// vanish there. Every mode varies along the first periodic axis of more than two cells in whole periods, so that the
+// mean of u' along every line of that axis is zero to round-off, and a mean profile is left as it is; without such an
+// axis every mode varies along z. Modes are drawn from counter-based random numbers of their own index: the same field
+// on any number of ranks.
 //
 // Wavelengths run from the length of the axis down to a quarter of it, and not below 8 cells; all modes have the same
 // expected energy and random directions.
@@ -40,7 +41,6 @@ private:
   Vec3 potential(const Index3& cell) const;
   double envelope(const Index3& cell) const;
 
-  NoiseBox box_;
   // e^{i 2 pi n_m x/L} (with the phase, in x) at all coordinates along each axis from -1 to n, and a_m.
   std::array<std::vector<std::complex<double>>, 3> waves_;
   std::array<std::vector<double>, 3> envelopes_;

@@ -60,6 +60,23 @@ TEST(SolenoidalNoise, FadesTowardsWallsAndBelowTheBed) {
   EXPECT_GT(strength(56), 0.9);
 }
 
+// Central differences along an axis of one or two cells are zero, and so is the wave number that they see: a mode that
+// varied along it alone would have a potential without limit.
+TEST(SolenoidalNoise, VariesAlongOtherAxesWhereAPeriodicOneIsThin) {
+  // 32 modes of sqrt(6/32) each, twice that where the envelope rises.
+  const double most = 2.0 * 32.0 * std::sqrt(6.0 / 32.0);
+  for (const int width : {1, 2}) {
+    const SolenoidalNoise noise({{60, width, 30}, {false, true, false}, 0.0}, 3);
+    double strongest = 0.0;
+    for (int z = 0; z < 30; ++z)
+      for (int y = 0; y < width; ++y)
+        for (int x = 0; x < 60; ++x) strongest = std::max(strongest, noise.velocity({x, y, z}).norm());
+    EXPECT_GT(strongest, 1.0) << width;
+    EXPECT_LT(strongest, most) << width;
+  }
+  EXPECT_EQ(SolenoidalNoise({{2, 2, 2}, {true, true, true}, 0.0}, 3).velocity({0, 1, 0}), Vec3(Vec3::Zero()));
+}
+
 TEST(SolenoidalNoise, HasTheStrengthAskedFor) {
   // In a periodic box the mean square of all modes adds up exactly, but for pairs with the same wave number: 32 modes
   // on 8 x 9 x 9 wave numbers share one in half the boxes, each changing the sum by at most 2/32.
