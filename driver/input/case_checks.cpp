@@ -274,6 +274,12 @@ void check_recycling(const Case& c, const io::YamlDocument& document) {
       throw document.error(key_of_face(face, document) + ".recycling_plane",
                            fmt::format("the plane must lie in the box; give a position along {} below {:g} m",
                                        axis_name[axis], c.domain.size[axis]));
+    const int plane = static_cast<int>(*inlet.recycling_plane / c.domain.spacing);
+    if (plane == (face % 2 == 0 ? 0 : cells_of(c.domain)[static_cast<std::size_t>(axis)] - 1))
+      throw document.error(key_of_face(face, document) + ".recycling_plane",
+                           fmt::format("the plane has the cells of the inlet itself, which nothing comes from; give a "
+                                       "position along {} more than {:g} m from the face, where the flow has developed",
+                                       axis_name[axis], c.domain.spacing));
   }
 }
 

@@ -32,7 +32,7 @@ template <typename Real>
 class RecycledInflow {
 public:
   // plane: coordinate of its cells along the normal of the face, in the whole box. speed: mean over the whole face,
-  // into the box. Throws InputError for a plane outside the box.
+  // into the box. Throws InputError for a plane outside the box or at the inlet itself.
   RecycledInflow(const Decomposition& decomposition, int rank, const CellIndexing& indexing, int face, int plane,
                  double speed);
 

@@ -184,6 +184,12 @@ INSTANTIATE_TEST_SUITE_P(
              "pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
              "grains.0.fixed=true"},
             {"domain.boundaries.x_low.recycling_plane", "a position along x below 0.06 m"}},
+        Bad{"a_recycling_plane_at_its_inlet",
+            {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0], recycling_plane: 0.0004}, "
+             "x_high: "
+             "pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
+             "grains.0.fixed=true"},
+            {"domain.boundaries.x_low.recycling_plane = 0.0004", "has the cells of the inlet itself"}},
         Bad{"a_recycling_inlet_that_blows_sideways",
             {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0.1], recycling_plane: 0.04}, "
              "x_high: "

@@ -1,5 +1,6 @@
 // Velocity inlet and pressure outlet.
 #include "lbm/fluid/fluid.hpp"
+#include "core/base/error.hpp"
 #include "lbm/lattice/equilibrium.hpp"
 
 #include <gtest/gtest.h>
@@ -272,6 +273,21 @@ FaceConditions recycling(int plane, double inflow, FaceType sides) {
   faces[0].velocity = Vec3(inflow, 0.0, 0.0);
   faces[0].recycling_plane = plane;
   return faces;
+}
+
+// At the inlet itself a step would recycle what it has brought in before.
+TEST(OpenFaces, RecycleFromAPlaneWithinTheBoxAlone) {
+  const Decomposition decomposition({12, 4, 4}, 1.0, {false, true, true}, {1, 1, 1});
+  const auto fluid_with = [&](const FaceConditions& faces) {
+    return Fluid<double>(decomposition, MPI_COMM_SELF, {}, faces);
+  };
+  for (const int plane : {-1, 0, 12})
+    EXPECT_THROW(fluid_with(recycling(plane, speed, FaceType::periodic)), InputError) << plane;
+  FaceConditions from_above = recycling(11, -speed, FaceType::periodic);
+  std::swap(from_above[0], from_above[1]);
+  EXPECT_THROW(fluid_with(from_above), InputError);
+  from_above[1].recycling_plane = 10;
+  EXPECT_NO_THROW(fluid_with(from_above));
 }
 
 // The parabola is the only steady flow that enters as it flows in the plane. From rest, and from the first cell on. The
