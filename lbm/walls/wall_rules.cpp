@@ -139,8 +139,11 @@ int Walls<Real>::edge_face(const IncomingDirection& e, int u, int v) const {
 template <typename Real>
 Real Walls<Real>::from_edge(const Populations<Real>& populations, const IncomingDirection& incoming,
                             std::ptrdiff_t cell, int other) const {
-  const FaceCondition& wall = faces_[incoming.face];
-  if (wall.type == FaceType::pressure_outlet) return at_outlet(populations, incoming, cell);
+  if (faces_[incoming.face].type == FaceType::pressure_outlet) {
+    const Real own = at_outlet(populations, incoming, cell);
+    if (faces_[other].type != FaceType::pressure_outlet) return own;
+    return Real(0.5) * (own + at_outlet(populations, {indexing_, other, incoming.direction}, cell));
+  }
   Vec3 velocity = Vec3::Zero();
   for (const int face : {std::min(incoming.face, other), std::max(incoming.face, other)})
     if (traits_of(faces_[face].type).has_velocity) velocity += faces_[face].velocity;

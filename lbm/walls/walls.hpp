@@ -25,9 +25,9 @@
 //
 // Next to a body: a population whose source cell is solid bounces back whole. A population that comes out of the edge
 // between two faces belongs to the face that comes first in: walls with friction, inlet, outlet, free slip. It bounces
-// back whole, plus the terms of both faces that have a velocity; at an outlet it obeys the outlet's rule. Two free-slip
-// faces reflect both components, which is the same. Populations with three components do not exist, so corners need no
-// rule.
+// back whole, plus the terms of both faces that have a velocity; at an outlet it obeys the outlet's rule, between two
+// outlets the mean of both. Two free-slip faces reflect both components, which is the same. Populations with three
+// components do not exist, so corners need no rule.
 #pragma once
 
 #include "core/base/archive.hpp"
