@@ -180,7 +180,7 @@ void add_clump(CLI::App& app, ClumpOrder& order) {
   clump->add_option("--scale", order.scale, "Length of one unit of the file, m (default: 1)")->check(positive_number());
   clump->add_option("--density", order.density, "Density of the grain, kg/m^3 (default: 2650)")
       ->check(positive_number());
-  clump->add_option("--out", order.out, "Write OUT.yaml and OUT.png (default: MESH_clump in this folder)");
+  clump->add_option("--out", order.out, "Write OUT.yaml and OUT.png (default: MESH_clump in the current folder)");
 }
 
 // Refuses option values that CLI11 accepts but that have no meaning.

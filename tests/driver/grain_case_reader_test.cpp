@@ -198,14 +198,14 @@ TEST(GrainCaseReader, SizesByMassThatCannotBe) {
   for (const auto& [sizes, words] : std::vector<std::pair<std::string, std::string>>{
            {"{sieve: {sizes: [4e-3], finer: [1]}}", "grains.0.diameter.sieve.sizes = [4e-3]: give at least two sieves"},
            {"{sieve: {sizes: [5e-3, 4e-3], finer: [0, 1]}}", "each at least 0.1 % wider than the one before"},
-           {"{sieve: {sizes: [4e-5, 5e-3], finer: [0, 1]}}", "the widest sieve can be 100 times the finest"},
+           {"{sieve: {sizes: [4e-5, 5e-3], finer: [0, 1]}}", "the widest sieve can be at most 100 times the finest"},
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 0.5, 1]}}", "as many shares of the mass as sieves"},
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0.1, 1]}}", "must rise from 0 at the first sieve to 1 at the last"},
            {"{sieve: {sizes: [4e-3, 5e-3, 6e-3], finer: [0, 1.2, 1]}}", "at most 1"},
            {"{d16: 4e-3, d84: 5e-3}", "grains.0.diameter.d16 = 4e-3: give d16, d50 and d84 together"},
            {"{d16: 4e-3, d50: 5e-3, d84: 5e-3}", "must rise in this order"},
            {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, minimum: 4.5e-3}", "must rise in this order"},
-           {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, minimum: 5e-5}", "the largest can be 100 times the smallest"},
+           {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, minimum: 5e-5}", "the largest can be at most 100 times the smallest"},
            {"{d16: 4e-3, d50: 5e-3, d84: 6e-3, median: 5e-3}", "only a distribution has it"},
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, minimum: 4e-3}", "only a distribution has it"},
            {"{sieve: {sizes: [4e-3, 5e-3], finer: [0, 1]}, value: 5e-3}", "give exactly one of value in m"}})
