@@ -117,8 +117,8 @@ public:
   // Prepares the sub-steps of a fluid step: wraps positions and, if some grain may leave its half skin during them,
   // moves grains to the rank of their centre and rebuilds ghosts and neighbour list. True if slots changed. Throws
   // RunError, on every rank, if a grain has moved more than half the skin, moves more than its radius in one fluid
-  // step, is beyond a wall that moves or a non-periodic face by more than its radius, is half its radius deep in a
-  // plate or a solid, or is no longer a number. One reduction. Collective.
+  // step, is beyond a wall or a non-periodic face by more than its radius, is half its radius deep in a plate or a
+  // solid, or is no longer a number. One reduction. Collective.
   bool prepare();
 
   // Prepares a part of the sub-steps, for grains too fast for one list per fluid step. Returns the number of sub-steps

@@ -19,7 +19,7 @@ public:
         plates_.push_back(wall);
         continue;
       }
-      if (wall.changes()) moving_.push_back(wall);
+      whole_.push_back(wall);
       for (int axis = 0; axis < 3; ++axis) {  // a face that has moved outwards
         if (wall.normal == Vec3::Unit(axis)) lower_[axis] = std::min(lower_[axis], wall.point[axis]);
         if (wall.normal == -Vec3::Unit(axis)) upper_[axis] = std::max(upper_[axis], wall.point[axis]);
@@ -38,8 +38,10 @@ public:
     return true;
   }
 
-  bool beyond_moving_wall(const Vec3& position, double radius) const {
-    return std::any_of(moving_.begin(), moving_.end(),
+  // True if the position is behind a wall by more than the radius (m): a wall has moved across it, or it has gone round
+  // a periodic face behind a wall across that axis, which has no images.
+  bool beyond_wall(const Vec3& position, double radius) const {
+    return std::any_of(whole_.begin(), whole_.end(),
                        [&](const Plane& wall) { return (position - wall.point).dot(wall.normal) < -radius; });
   }
 
@@ -52,7 +54,7 @@ public:
 private:
   PeriodicBox box_;
   Vec3 lower_ = Vec3::Zero(), upper_;
-  std::vector<Plane> moving_, plates_;
+  std::vector<Plane> whole_, plates_;
 };
 
 }  // namespace thalweg::dem

@@ -38,7 +38,7 @@ GrainFault GrainValidity::fault_of(const GrainStore& store, std::size_t s, doubl
   if (!x.allFinite() || !std::isfinite(speed)) return GrainFault::not_finite;
   if (!space.holds(x, radius)) return GrainFault::outside;
   if (!holds_translation(store.motion[s])) {
-    if (space.beyond_moving_wall(x, radius)) return GrainFault::beyond_wall;
+    if (space.beyond_wall(x, radius)) return GrainFault::beyond_wall;
     if (space.deep_in_plate(x, radius)) return GrainFault::in_plate;
     if (std::binary_search(in_solids.begin(), in_solids.end(), s)) return GrainFault::in_solid;
   }
@@ -63,7 +63,7 @@ void GrainValidity::throw_first(const GrainStore& store, const PeriodicBox& box,
     case GrainFault::outside:
       throw RunError(grain + " is more than its radius beyond a face of the box that is not periodic.");
     case GrainFault::beyond_wall:
-      throw RunError(grain + " is more than its radius beyond a wall that moves.");
+      throw RunError(grain + " is more than its radius beyond a wall.");
     case GrainFault::in_plate:
       throw RunError(grain +
                      " is more than half its radius deep in a plate; use stiffer contacts, or less load or speed.");

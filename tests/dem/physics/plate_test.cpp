@@ -202,6 +202,21 @@ TEST(Plate, HasPeriodicImages) {
   }
 }
 
+// A grain that goes round a periodic face comes out 35 mm behind a plane at 45 degrees.
+TEST(Plane, HasNoImagesAGrainCouldGoRoundTo) {
+  Plane slope;
+  slope.normal = Vec3(-1.0, 0.0, 1.0).normalized();
+  GrainDynamics grains(test::cube(), MPI_COMM_SELF, with({slope}),
+                       {test::glass_sphere(0, Vec3(0.002, 0.025, 0.025), Vec3(-0.1, 0.0, 0.0))});
+  std::string message;
+  for (int n = 0; n < 500 && message.empty(); ++n) try {  // 25 ms; it needs 20 ms
+      test::step(grains);
+    } catch (const RunError& error) {
+      message = error.what();
+    }
+  EXPECT_NE(message.find("moving at 0.1 m/s, is more than its radius beyond a wall"), std::string::npos) << message;
+}
+
 TEST(Plate, IsRefusedWithoutLengthOrOffItsPlane) {
   EXPECT_THROW(check(plate(Vec3::Zero(), 0.0, 1.0)), InputError);
   EXPECT_THROW(check(plate(Vec3::Zero(), 1.0, 1.0, Vec3::UnitX())), InputError);
