@@ -277,9 +277,17 @@ void check_recycling(const Case& c, const io::YamlDocument& document) {
     const int plane = static_cast<int>(*inlet.recycling_plane / c.domain.spacing);
     if (plane == (face % 2 == 0 ? 0 : cells_of(c.domain)[static_cast<std::size_t>(axis)] - 1))
       throw document.error(key_of_face(face, document) + ".recycling_plane",
-                           fmt::format("the plane has the cells of the inlet itself, which nothing comes from; give a "
-                                       "position along {} more than {:g} m from the face, where the flow has developed",
+                           fmt::format("the plane lies in the cells of the inlet itself; give a position along {} more "
+                                       "than {:g} m from the face, where the flow has developed",
                                        axis_name[axis], c.domain.spacing));
+    // Faces of one axis do not meet; of two axes, both would write the populations out of the edge.
+    for (std::size_t other = 0; other < face / 2 * 2; ++other)
+      if (c.domain.faces[other].recycling_plane)
+        throw document.error(
+            key_of_face(face, document) + ".recycling_plane",
+            fmt::format("the inlet meets {}, which recycles as well, at an edge; leave the key out for "
+                        "one of them",
+                        key_of_face(other, document)));
   }
 }
 

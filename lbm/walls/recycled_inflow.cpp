@@ -31,8 +31,7 @@ RecycledInflow<Real>::RecycledInflow(const Decomposition& decomposition, int ran
     throw InputError(
         fmt::format("The recycling plane is at cell {} across {} cells; give one of the box.", plane, cells[axis_]));
   if (plane == (inward_ > 0 ? 0 : cells[axis_] - 1))
-    throw InputError(
-        "The recycling plane has the cells of the inlet itself, which nothing comes from; give one further on.");
+    throw InputError("The recycling plane lies in the cells of the inlet itself; give one farther from the face.");
   mass_ = speed * cells[first_axis(axis_)] * cells[second_axis(axis_)];
   int found = 0;
   for (int o = 1; o < D3Q19::directions; ++o)

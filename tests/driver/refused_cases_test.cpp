@@ -189,7 +189,13 @@ INSTANTIATE_TEST_SUITE_P(
              "x_high: "
              "pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
              "grains.0.fixed=true"},
-            {"domain.boundaries.x_low.recycling_plane = 0.0004", "has the cells of the inlet itself"}},
+            {"domain.boundaries.x_low.recycling_plane = 0.0004", "lies in the cells of the inlet itself"}},
+        Bad{"two_recycling_inlets_that_meet",
+            {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0], recycling_plane: 0.04}, x_high: "
+             "pressure_outlet, y_low: {type: velocity_inlet, velocity: [0, 0.2, 0], recycling_plane: 0.008}, y_high: "
+             "pressure_outlet, bottom: no_slip, top: free_slip}",
+             "grains.0.fixed=true"},
+            {"domain.boundaries.y_low.recycling_plane", "meets domain.boundaries.x_low"}},
         Bad{"a_recycling_inlet_that_blows_sideways",
             {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0.1], recycling_plane: 0.04}, "
              "x_high: "

@@ -251,7 +251,10 @@ VARIATIONS = [
     (WATER, ["fluid.time_step=null"], []),
     (OIL, ["grains.0.placement.region={lower: [0, 0, 0], upper: [0.02, 0.01, 0.02]}", "run.until=0.01"], []),
     (
-        DRY, ["contact.normal_stiffness=30", "grains.1.contact.normal_stiffness=20", "run.time_step=2.8e-5"],
+        DRY, [
+            "contact.normal_stiffness=30", "contact.tangential_stiffness=8.6", "grains.1.contact.normal_stiffness=20",
+            "run.time_step=2.8e-5",
+        ],
         ["would overlap"],
     ), (DRY, ["grains.0.placement.pattern=uniform", "grains.0.count=600"], ["fewer or smaller grains"]),
     (MODEL_FLUID, ["run.time_step=1.3e-3", "model_fluid.shields_number=2000"], ["a twentieth of a diameter"]),
