@@ -70,7 +70,9 @@ analysis::GrainContext grain_context(const Case& c) {
   for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) context.obstacles.spheres.push_back(sphere.id);
   context.obstacles.solids_below = solids_below(c);
   if (!has_fluid(c)) return context;
-  if (gravity_vector(c.gravity).z() < 0.0)
+  // Only where some may float: telling them apart takes two reductions in every look at the bed.
+  const auto may_float = [&c](const beds::Population& grains) { return !grains.held() && floats(c, grains); };
+  if (gravity_vector(c.gravity).z() < 0.0 && std::any_of(c.grains.begin(), c.grains.end(), may_float))
     context.obstacles.floating_density = (1.0 + neutral_density) * c.fluid.density;
   context.body_force = body_force(c);
   context.submerged_weight = submerged_weight(c);
