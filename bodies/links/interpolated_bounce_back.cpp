@@ -3,6 +3,7 @@
 #include "bodies/links/fixed_sums.hpp"
 #include "bodies/links/link_rules.hpp"
 #include "core/base/check.hpp"
+#include "core/base/prefetch.hpp"
 #include "lbm/lattice/equilibrium.hpp"
 
 #include <algorithm>
@@ -72,7 +73,9 @@ void InterpolatedBounceBack<Real>::apply_links(int tile) {
   const auto ask_for = [&](std::size_t r) {
     if (r >= ranges.size()) return;
     t.links.prefetch(ranges[r].first, ranges[r].count);
-    bodies_[static_cast<std::size_t>(ranges[r].body)].prefetch();
+    const auto body = static_cast<std::size_t>(ranges[r].body);
+    prefetch(bodies_[body]);
+    if constexpr (with_moments) prefetch((*moments_)[body]);
   };
   constexpr std::size_t ahead = 3;  // runs
   for (std::size_t r = 0; r < ahead; ++r) ask_for(r);
@@ -134,11 +137,9 @@ void InterpolatedBounceBack<Real>::append(Batch& b, const LinkTable::Tile& tile,
   const std::uint32_t first = range.first + static_cast<std::uint32_t>(from);
   const int narrow = std::clamp(static_cast<int>(range.narrow) - from, 0, count);
   b.piece[b.pieces++] = {body, start, count, narrow == count ? n : narrow};
-  for (int k = 0; k < n; k += links_at_a_time) {
-    std::copy_n(tile.links.xy.data() + first + k, links_at_a_time, b.xy + start + k);
-    std::copy_n(tile.links.tag.data() + first + k, links_at_a_time, b.tag + start + k);
-    b.body[(start + k) / links_at_a_time] = body;
-  }
+  std::copy_n(tile.links.xy.data() + first, n, b.xy + start);
+  std::copy_n(tile.links.tag.data() + first, n, b.tag + start);
+  std::fill_n(b.body + start / links_at_a_time, n / links_at_a_time, body);
   b.size += n;
   const LinkBody& of = bodies_[static_cast<std::size_t>(body)];
   if (of.radius > 0.0) {
@@ -178,7 +179,7 @@ void InterpolatedBounceBack<Real>::find_narrow(Batch& b) const {
       count += static_cast<int>(b.distance[k] < Real(0.5));
     }
   b.narrow_count = count;
-  for (int c = 0; c < count; ++c) bodies_[LinkTag::upstream_body(b.tag[b.narrow[c]])].prefetch();
+  for (int c = 0; c < count; ++c) prefetch(bodies_[LinkTag::upstream_body(b.tag[b.narrow[c]])]);
 }
 
 template <typename Real>
@@ -189,6 +190,7 @@ void InterpolatedBounceBack<Real>::finish(const Batch& b) {
     const Piece& piece = b.piece[p];
     reflect<Rule, with_moments>(b, piece);
     add_momentum(piece);
+    add_pressure_and_mass(piece);
     if (by_height_) add_by_height(b, piece);
     if constexpr (with_moments) add_moments(piece);
   }
@@ -318,38 +320,43 @@ void InterpolatedBounceBack<Real>::reflect(const Batch& b, const Piece& piece) {
     if constexpr (with_moments) {
       const Pack m[3] = {mx, my, mz}, arm[3] = {ax, ay, az};
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) put(m[i] * arm[j], values_.moment[3 * i + j]);
+        for (int j = 0; j < 3; ++j) put(m[i] * arm[j], values_.moment[i][j]);
     }
   }
 }
 
+// Three sums at a time: more of them do not fit into the registers of AVX2.
+template <typename Real>
+FixedVec3 InterpolatedBounceBack<Real>::sum_of(const Piece& piece, const Real (&terms)[3][capacity]) {
+  static_assert(capacity <= FixedSums<3>::most_terms);
+  FixedSums<3> sums;
+  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<3>::width)
+    sums.add({wide(terms[0] + k), wide(terms[1] + k), wide(terms[2] + k)});
+  return {sums[0], sums[1], sums[2]};
+}
+
 template <typename Real>
 void InterpolatedBounceBack<Real>::add_momentum(const Piece& piece) const {
-  const Values& v = values_;
-  FixedSums<8> sums;
-  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<8>::width)
-    sums.add({wide(v.momentum[0] + k), wide(v.momentum[1] + k), wide(v.momentum[2] + k), wide(v.torque[0] + k),
-              wide(v.torque[1] + k), wide(v.torque[2] + k), wide(v.pressure + k),
-              // The difference is exact in double: single storage loses nothing here.
-              wide(v.given + k) - wide(v.taken + k)});
-  static_assert(capacity <= FixedSums<8>::most_terms);
   LinkBody& body = bodies_[static_cast<std::size_t>(piece.body)];
-  body.force += {sums[0], sums[1], sums[2]};
-  if (body.turns) body.torque += {sums[3], sums[4], sums[5]};
-  body.pressure = exact_sum(body.pressure, sums[6]);
-  body.mass = exact_sum(body.mass, sums[7]);
+  body.force += sum_of(piece, values_.momentum);
+  if (body.turns) body.torque += sum_of(piece, values_.torque);
+}
+
+template <typename Real>
+void InterpolatedBounceBack<Real>::add_pressure_and_mass(const Piece& piece) const {
+  FixedSums<2> sums;
+  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<2>::width)
+    // The difference is exact in double: single storage loses nothing here.
+    sums.add({wide(values_.pressure + k), wide(values_.given + k) - wide(values_.taken + k)});
+  LinkBody& body = bodies_[static_cast<std::size_t>(piece.body)];
+  body.pressure = exact_sum(body.pressure, sums[0]);
+  body.mass = exact_sum(body.mass, sums[1]);
 }
 
 template <typename Real>
 void InterpolatedBounceBack<Real>::add_moments(const Piece& piece) const {
-  const Values& v = values_;
-  FixedSums<9> sums;
-  for (int k = piece.first; k < piece.filled_end(); k += FixedSums<9>::width)
-    sums.add({wide(v.moment[0] + k), wide(v.moment[1] + k), wide(v.moment[2] + k), wide(v.moment[3] + k),
-              wide(v.moment[4] + k), wide(v.moment[5] + k), wide(v.moment[6] + k), wide(v.moment[7] + k),
-              wide(v.moment[8] + k)});
   FixedTensor& moments = (*moments_)[static_cast<std::size_t>(piece.body)];
-  for (int k = 0; k < 9; ++k) moments.add(k, sums[k]);
+  for (int row = 0; row < 3; ++row) moments.add(row, sum_of(piece, values_.moment[row]));
 }
 
 template <typename Real>

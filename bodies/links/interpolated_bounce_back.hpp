@@ -102,7 +102,7 @@ private:
     // rho_rest)(x_f).
     alignas(64) Real taken[capacity], given[capacity], pressure[capacity];
     alignas(64) Real momentum[3][capacity], torque[3][capacity];
-    alignas(64) Real moment[9][capacity];
+    alignas(64) Real moment[3][3][capacity];
   };
   static int component(std::uint32_t tag, int axis) { return LinkTag::velocity(static_cast<int>(tag), axis); }
 
@@ -158,7 +158,9 @@ private:
   void find_leaks(const Batch& batch);
   template <typename Rule, bool with_moments>
   void reflect(const Batch& batch, const Piece& piece);
+  static FixedVec3 sum_of(const Piece& piece, const Real (&terms)[3][capacity]);
   void add_momentum(const Piece& piece) const;
+  void add_pressure_and_mass(const Piece& piece) const;
   void add_moments(const Piece& piece) const;
   void add_by_height(const Batch& batch, const Piece& piece) const;
 

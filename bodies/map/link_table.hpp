@@ -113,12 +113,6 @@ struct LinkBody {
     force = torque = {};
     mass = pressure = 0;
   }
-
-  // Prefetches it.
-  void prefetch() const {
-    for (std::size_t byte = 0; byte < sizeof(LinkBody); byte += 64)
-      __builtin_prefetch(reinterpret_cast<const char*>(this) + byte);
-  }
 };
 
 // Sums over a body's links that do not depend on the flow: integers, in 36ths, so that they can be updated exactly.

@@ -46,30 +46,41 @@ void OccludedPatches::cell_changes(const Index3& local, std::int32_t now) {
     for (const std::int32_t holder : {before, now}) {
       if (holder == CellMap::fluid || holder == other) continue;
       const int lines = holder == now ? 1 : -1;
-      if (owned) count(holder, other, D3Q19::opposite(i), lines);
-      if (other_owned && other >= 0) count(other, holder, i, lines);
+      if (owned) count({holder, other}, D3Q19::opposite(i), lines);
+      if (other_owned && other >= 0) count({other, holder}, i, lines);
     }
   }
 }
 
-void OccludedPatches::count(std::int32_t p, std::int32_t q, int direction, int lines) {
-  Patch& patch = patches_[key(p, q)];
+void OccludedPatches::count(const Pair& pair, int direction, int lines) {
+  const auto [found, is_new] = place_of_.try_emplace(key(pair), patches_.size());
+  const std::size_t place = found->second;
+  if (is_new) patches_.push_back({pair, {}});
+  Patch& patch = patches_[place].patch;
   const int weight = lines * (3 - D3Q19::length_squared(direction));
   for (std::size_t a = 0; a < 3; ++a) patch.sum[a] += weight * D3Q19::c[direction][a];
   patch.lines += lines;
-  if (patch.lines == 0) patches_.erase(key(p, q));
+  if (patch.lines == 0) erase(place);
+}
+
+void OccludedPatches::erase(std::size_t place) {
+  place_of_.erase(key(patches_[place].pair));
+  if (place + 1 < patches_.size()) {
+    patches_[place] = patches_.back();
+    place_of_[key(patches_[place].pair)] = place;
+  }
+  patches_.pop_back();
 }
 
 Vec3 OccludedPatches::patch(std::int32_t p, std::int32_t q) const {
-  const auto found = patches_.find(key(p, q));
-  if (found == patches_.end()) return Vec3::Zero();
-  return to_vec3(found->second);
+  const auto found = place_of_.find(key({p, q}));
+  if (found == place_of_.end()) return Vec3::Zero();
+  return to_vec3(patches_[found->second].patch);
 }
 
 std::vector<std::array<std::int64_t, 3>> OccludedPatches::by_solids(std::size_t slots, int solids) const {
   std::vector<std::array<std::int64_t, 3>> sums(slots, std::array<std::int64_t, 3>{});
-  for (const auto& [key, patch] : patches_) {
-    const Pair pair = pair_of(key);
+  for (const auto& [pair, patch] : patches_) {
     if (pair.p < solids || pair.q < 0 || pair.q >= solids) continue;
     for (std::size_t a = 0; a < 3; ++a) sums[static_cast<std::size_t>(pair.p)][a] += patch.sum[a];
   }
@@ -132,8 +143,7 @@ void OccludedPatches::apply(const std::vector<MappedBody>& mapped, int solids, c
                             double reference, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   CHECK(mapped.size() == bodies.size() && surrounding.size() == bodies.size());
   CHECK(!moments || moments->size() == bodies.size());
-  for (const auto& [key, patch] : patches_) {
-    const Pair pair = pair_of(key);
+  for (const auto& [pair, patch] : patches_) {
     const auto p = static_cast<std::size_t>(pair.p), q = static_cast<std::size_t>(pair.q);
     const bool q_is_sphere = pair.q >= solids;
     if (pair.p < solids) {  // the opposite of what the other one feels
@@ -160,8 +170,7 @@ void OccludedPatches::apply(const std::vector<MappedBody>& mapped, int solids, c
 std::array<FixedVec3, 6> OccludedPatches::wall_forces(int solids, const std::vector<double>& surrounding,
                                                       double reference) const {
   std::array<FixedVec3, 6> forces{};
-  for (const auto& [key, patch] : patches_) {
-    const Pair pair = pair_of(key);
+  for (const auto& [pair, patch] : patches_) {
     if (pair.p < solids || pair.q >= 0) continue;
     const FixedVec3 of_grain = force(patch, surrounding[static_cast<std::size_t>(pair.p)] - reference);
     forces[static_cast<std::size_t>(face_of_wall(pair.q))] += {-of_grain.x, -of_grain.y, -of_grain.z};

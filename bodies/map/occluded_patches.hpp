@@ -65,11 +65,12 @@ private:
   struct Pair {
     std::int32_t p, q;
   };
-  static Pair pair_of(std::uint64_t key) {
-    return {static_cast<std::int32_t>(key >> 32), static_cast<std::int32_t>(static_cast<std::uint32_t>(key))};
-  }
-  static std::uint64_t key(std::int32_t p, std::int32_t q) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(p)) << 32 | static_cast<std::uint32_t>(q);
+  struct Entry {
+    Pair pair;
+    Patch patch;
+  };
+  static std::uint64_t key(const Pair& pair) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(pair.p)) << 32 | static_cast<std::uint32_t>(pair.q);
   }
   static Vec3 to_vec3(const Patch& patch);                    // h
   static FixedVec3 force(const Patch& patch, double excess);  // 2 D h; excess: D less the reference
@@ -79,12 +80,14 @@ private:
   void press_solid(const Patch& patch, double excess, const LinkBody& sphere, LinkBody& solid) const;
   Vec3 velocity_beside(const LinkBody& solid, const LinkBody& sphere) const;
   static void give_mass(const Patch& patch, const Vec3& velocity, LinkBody& body);
-  void count(std::int32_t p, std::int32_t q, int direction, int lines);
+  void count(const Pair& pair, int direction, int lines);
+  void erase(std::size_t place);
 
   PeriodicBox box_;                              // cells
   std::array<bool, 3> wall_below_, wall_above_;  // true where the block ends at a wall, along each axis
   const lbm::CellMap& cells_;
-  std::unordered_map<std::uint64_t, Patch> patches_;
+  std::vector<Entry> patches_;  // in no order
+  std::unordered_map<std::uint64_t, std::size_t> place_of_;  // in patches_, by key
 };
 
 }  // namespace thalweg::bodies

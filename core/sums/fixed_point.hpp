@@ -63,6 +63,11 @@ struct FixedTensor {
     std::int64_t& sum = sums[static_cast<std::size_t>(entry)];
     sum = exact_sum(sum, term);
   }
+  void add(int row, const FixedVec3& terms) {
+    add(3 * row, terms.x);
+    add(3 * row + 1, terms.y);
+    add(3 * row + 2, terms.z);
+  }
   // Adds a_i b_j.
   void add(const Vec3& a, const Vec3& b) {
     for (int k = 0; k < 9; ++k) add(k, LatticeFixed::from(a[k / 3] * b[k % 3]));
