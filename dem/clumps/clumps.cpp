@@ -108,14 +108,14 @@ double Clumps::radius_of(const Clump& clump) const { return radius_of_volume(clu
 void Clumps::turn_arms(std::size_t n) {
   const Eigen::Matrix3d turn = rotation_matrix(clumps_[n].orientation);
   const std::size_t first = first_arm_[n];
-  for (std::size_t m = first; m < first + count(n); ++m) arms_[m] = turn * offsets_[m];
+  for (std::size_t m = first; m < first + member_count(n); ++m) arms_[m] = turn * offsets_[m];
 }
 
 // Of all shares with the sum 1 and without a moment, sum w_m r_m = 0, those nearest to equal ones:
 // w_m = 1/N - (r_m - r) . C^-1 r, r the mean of r_m, C the sum of (r_m - r)(r_m - r)^T.
 void Clumps::share_body_force(std::vector<Vec3>& of_slot) const {
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
-    const std::span<const Vec3> offsets(&offsets_[first_arm_[n]], count(n));
+    const std::span<const Vec3> offsets(&offsets_[first_arm_[n]], member_count(n));
     Vec3 mean = Vec3::Zero();
     for (const Vec3& offset : offsets) mean += offset / static_cast<double>(offsets.size());
     Mat3 spread = Mat3::Zero();
@@ -147,7 +147,7 @@ void Clumps::wrap(const PeriodicBox& box) {
 
 void Clumps::assign_owners(const Decomposition& decomposition, std::vector<int>& owner_of_slot) const {
   for (std::size_t n = 0; n < clumps_.size(); ++n)
-    std::fill_n(owner_of_slot.begin() + static_cast<std::ptrdiff_t>(first_slot_[n]), count(n),
+    std::fill_n(owner_of_slot.begin() + static_cast<std::ptrdiff_t>(first_slot_[n]), member_count(n),
                 decomposition.owner_of(clumps_[n].centre));
 }
 
@@ -165,7 +165,7 @@ void Clumps::migrate(const Decomposition& decomposition, MPI_Comm communicator) 
 }
 
 void Clumps::add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const {
-  for (std::size_t m = 0; m < count(n); ++m) {
+  for (std::size_t m = 0; m < member_count(n); ++m) {
     const std::size_t slot = first_slot_[n] + m;
     force += store.load_force[slot];
     torque += store.load_torque[slot] + arm(n, m).cross(store.load_force[slot]);
@@ -183,8 +183,8 @@ void Clumps::gather_load(std::size_t n, const GrainStore& store) {
 }
 
 void Clumps::set_central_force(std::size_t n, const Vec3& force, GrainStore& store) {
-  const Vec3 share = force / static_cast<double>(count(n));
-  for (std::size_t m = 0; m < count(n); ++m) {
+  const Vec3 share = force / static_cast<double>(member_count(n));
+  for (std::size_t m = 0; m < member_count(n); ++m) {
     const std::size_t slot = first_slot_[n] + m;
     store.load_force[slot] = share;
     store.load_torque[slot] = -arm(n, m).cross(share);
@@ -196,9 +196,10 @@ void Clumps::stop_along_floor(std::size_t n, PackedGrainState& grains) {
   Clump& clump = clumps_[n];
   clump.velocity[0] = clump.velocity[1] = 0.0;
   Vec3 pull = loads_[n].force;
-  for (std::size_t m = 0; m < count(n); ++m) pull += vector_of(grains[first_slot_[n] + m].force);
-  const Vec3 share(-pull[0] / static_cast<double>(count(n)), -pull[1] / static_cast<double>(count(n)), 0.0);
-  for (std::size_t m = 0; m < count(n); ++m) {
+  for (std::size_t m = 0; m < member_count(n); ++m) pull += vector_of(grains[first_slot_[n] + m].force);
+  const auto members = static_cast<double>(member_count(n));
+  const Vec3 share(-pull[0] / members, -pull[1] / members, 0.0);
+  for (std::size_t m = 0; m < member_count(n); ++m) {
     PackedGrain& member = grains[first_slot_[n] + m];
     member.force += double4(share);
     member.torque -= double4(arm(n, m).cross(share));
@@ -210,7 +211,7 @@ void Clumps::half_kicks(const PackedGrainState& grains, double time_step, int ki
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
     Clump& clump = clumps_[n];
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    for (std::size_t m = 0; m < count(n); ++m) {
+    for (std::size_t m = 0; m < member_count(n); ++m) {
       const PackedGrain& member = grains[first_slot_[n] + m];
       const Vec3 pull = vector_of(member.force);
       force += pull;
@@ -245,7 +246,7 @@ void Clumps::drift(double time_step) {
 void Clumps::place(PackedGrainState& grains, const PeriodicBox& box) const {
   for (std::size_t n = 0; n < clumps_.size(); ++n) {
     const Clump& clump = clumps_[n];
-    for (std::size_t m = 0; m < count(n); ++m) {
+    for (std::size_t m = 0; m < member_count(n); ++m) {
       PackedGrain& member = grains[first_slot_[n] + m];
       const Vec3 r = arm(n, m);
       // The centre may be just outside the box, and no member is further than half the box from it.
@@ -258,14 +259,14 @@ void Clumps::place(PackedGrainState& grains, const PeriodicBox& box) const {
 
 Vec3 Clumps::force(std::size_t n, const GrainStore& store) const {
   Vec3 force = Vec3::Zero(), unused = Vec3::Zero();
-  for (std::size_t m = 0; m < count(n); ++m) force += store.contact_force[first_slot_[n] + m];
+  for (std::size_t m = 0; m < member_count(n); ++m) force += store.contact_force[first_slot_[n] + m];
   add_loads(n, store, force, unused);
   return force;
 }
 
 Vec3 Clumps::torque(std::size_t n, const GrainStore& store) const {
   Vec3 unused = Vec3::Zero(), torque = Vec3::Zero();
-  for (std::size_t m = 0; m < count(n); ++m) {
+  for (std::size_t m = 0; m < member_count(n); ++m) {
     const std::size_t slot = first_slot_[n] + m;
     torque += store.contact_torque[slot] + arm(n, m).cross(store.contact_force[slot]);
   }
@@ -280,7 +281,7 @@ double Clumps::largest_pull(const GrainStore& store) const {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     add_loads(n, store, force, torque);
     double reach = 0.0;
-    for (std::size_t m = 0; m < count(n); ++m) reach = std::max(reach, arm(n, m).norm());
+    for (std::size_t m = 0; m < member_count(n); ++m) reach = std::max(reach, arm(n, m).norm());
     if (!holds_translation(clump.motion)) largest = std::max(largest, force.norm() / clump.mass);
     if (!holds_rotation(clump.motion))
       largest = std::max(largest, force.norm() / clump.mass + torque.norm() / clump.moments.minCoeff() * reach);

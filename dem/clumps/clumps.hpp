@@ -78,7 +78,7 @@ public:
   // diameter of its volume, which a plate that is given by its moments could fall below.
   double width(GlobalId clump) const;
   double radius_of(const Clump& clump) const;  // the same
-  std::size_t member_count(std::size_t n) const { return count(n); }
+  std::size_t member_count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
 
   void wrap(const PeriodicBox& box);
 
@@ -109,7 +109,6 @@ public:
 private:
   const Clump& with_id(GlobalId id) const;  // owned here
   Vec3 arm(std::size_t n, std::size_t member) const { return arms_[first_arm_[n] + member]; }
-  std::size_t count(std::size_t n) const { return static_cast<std::size_t>(clumps_[n].members); }
   void turn_arms(std::size_t n);
   void gather_load(std::size_t n, const GrainStore& store);
   void add_loads(std::size_t n, const GrainStore& store, Vec3& force, Vec3& torque) const;

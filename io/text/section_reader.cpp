@@ -85,6 +85,15 @@ std::string nearest(const std::string& word, const std::vector<std::string>& wor
   return best;
 }
 
+// What to do about a key without a value that YAML has found where none was meant; empty if it is a key.
+std::string remedy_of_notation(const std::string& key) {
+  if (std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+    return "a comma begins a new key here; write numbers with a point, as 9.81";
+  const std::size_t colon = key.find(':');
+  if (colon == std::string::npos) return "";
+  return fmt::format("write a space after the colon: {}: {}", key.substr(0, colon), key.substr(colon + 1));
+}
+
 }  // namespace
 
 SectionReader::SectionReader(const YamlDocument& document, std::string key_path, const YamlNode& section)
@@ -124,10 +133,9 @@ void SectionReader::refuse_unknown() const {
   };
   for (const auto& [key, node] : section_.entries) {
     if (has(known_, key)) continue;
-    if (node.kind == YamlNode::Kind::scalar && node.text.empty() &&
-        std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
-      fail(node, key, "a comma begins a new key here; write numbers with a point, as 9.81");
-    fail(node, key, remedy_of_unknown(key));
+    const bool has_no_value = node.kind == YamlNode::Kind::scalar && node.text.empty();
+    const std::string notation = has_no_value ? remedy_of_notation(key) : "";
+    fail(node, key, notation.empty() ? remedy_of_unknown(key) : notation);
   }
   // A key that is taken out under a wrong name would stay what it is.
   const std::string above = joined_key(key_path_, "");

@@ -1,12 +1,9 @@
-// A case that tests of the report share, and how they look for words in it.
+// A case that tests of the report share.
 #pragma once
 
 #include "driver/case/case.hpp"
 
-#include <algorithm>
 #include <numbers>
-#include <string>
-#include <vector>
 
 namespace thalweg::driver {
 
@@ -43,11 +40,6 @@ inline Case wide_bed() {
   c.domain.size = Vec3(0.120, 0.040, 0.106);
   c.coupling.grain_steps_per_fluid_step = 50;
   return c;
-}
-
-inline bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  return std::any_of(texts.begin(), texts.end(),
-                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
 }  // namespace thalweg::driver

@@ -223,6 +223,8 @@ INSTANTIATE_TEST_SUITE_P(
             "FILE:2: length = \"long\": expected a number in m above 0, for example 2."},
         Bad{"decimal_comma", "paint: red\nlength: 2\ncargo: {mass: 9,81}\n", "",
             "FILE:3: cargo.81 = \"\": a comma begins a new key here; write numbers with a point, as 9.81."},
+        Bad{"colon_without_space", "paint: red\nlength: 2\ncargo: {mass:9}\n", "",
+            "FILE:3: cargo.mass:9 = \"\": write a space after the colon: mass: 9."},
         Bad{"number_with_unit", "paint: red\nlength: 2 m\n", "",
             "FILE:2: length = \"2 m\": expected a number in m above 0, for example 2."},
         Bad{"not_finite", "paint: red\nlength: .inf\n", "",

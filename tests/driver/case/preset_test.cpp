@@ -2,6 +2,7 @@
 
 #include "driver/estimate/contact_stiffness.hpp"
 #include "tests/driver/case_texts.hpp"
+#include "tests/driver/text_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,8 +32,6 @@ run: {until: 3.0}
 )";
 
 Case read(const std::vector<std::string>& overrides = {}) { return testing::read_text(published, overrides); }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // Zhang et al. 2022, section 2; their load and bulk viscosity do not run (docs/stability.md).
 TEST(Preset, SetsWhatIsPublished) {

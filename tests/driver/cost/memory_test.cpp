@@ -6,14 +6,13 @@
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/supplied_grains.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>
 
 namespace thalweg::driver::memory_test {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string refusal(double needed, double on_node, double there) {
   try {

@@ -1,6 +1,7 @@
 #include "driver/estimate/contact_estimate.hpp"
 
 #include "driver/warnings/case_warnings.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>

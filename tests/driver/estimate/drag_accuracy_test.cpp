@@ -1,6 +1,7 @@
 #include "driver/estimate/drag_accuracy.hpp"
 
 #include "driver/estimate/flow_estimate.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,6 @@
 
 namespace thalweg::driver::drag_accuracy_test {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(DragText, IsOfTheFinestGrainsAtTheirOwnSpeed) {
   Case c = wide_bed();

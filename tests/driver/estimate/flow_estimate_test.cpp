@@ -2,6 +2,7 @@
 
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>

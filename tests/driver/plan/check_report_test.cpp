@@ -8,6 +8,7 @@
 #include "driver/warnings/contact_warnings.hpp"
 #include "driver/warnings/remedy.hpp"
 #include "tests/driver/case_texts.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <fmt/format.h>

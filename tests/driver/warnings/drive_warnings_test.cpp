@@ -4,6 +4,7 @@
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
+#include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <fmt/format.h>
@@ -35,8 +36,6 @@ std::string only_warning(const Case& c) {
   EXPECT_LE(found.size(), 1U);
   return found.empty() ? std::string() : found.front();
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // (rho_s - rho) V g over the mass of everything.
 TEST(DriveWarnings, OfAWeightThatNothingCarries) {

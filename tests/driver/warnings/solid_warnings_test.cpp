@@ -1,6 +1,7 @@
 #include "driver/warnings/solid_warnings.hpp"
 
 #include "tests/driver/case_texts.hpp"
+#include "tests/driver/text_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,8 +44,6 @@ std::string said(const std::string& text, const std::vector<SolidCase>& solids,
   for (const std::string& sentence : solids_in_the_lattice(c)) all += sentence + "\n";
   return all;
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // From wall to wall at x = 10 mm.
 SolidCase gate(double low, double high) { return box({0.010, -0.001, low}, {0.012, 0.021, high}); }
