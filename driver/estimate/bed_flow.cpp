@@ -110,6 +110,12 @@ bool drives_flow(const Case& c, int axis) {
   return lets_through(c.domain.faces[low]) && lets_through(c.domain.faces[low + 1]);
 }
 
+bool inlet_sets_flow(const Case& c, int axis) {
+  const auto low = static_cast<std::size_t>(2 * axis);
+  return c.domain.faces[low].type == lbm::FaceType::velocity_inlet ||
+         c.domain.faces[low + 1].type == lbm::FaceType::velocity_inlet;
+}
+
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }
 
 bool moves_along_x(const coupling::FaceKeys& face) {

@@ -53,6 +53,10 @@ double settled_height(const Case& c);
 // pressure.
 bool drives_flow(const Case& c, int axis);
 
+// True if a velocity_inlet at a face across an axis (0: x, 1: y) sets how much flows along it: pressure then balances
+// gravity along it, as between walls.
+bool inlet_sets_flow(const Case& c, int axis);
+
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);
 

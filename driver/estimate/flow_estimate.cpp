@@ -124,12 +124,13 @@ double turbulent_velocity(const Case& c, const Channel& channel, double along) {
   return std::min(over_bed / karman_constant * log_of(channel.distance(), over_bed, channel), between);
 }
 
-// m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, and balanced gravity
-// drives nothing.
+// m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, an inlet sets how
+// much flows whatever the slope, and balanced gravity drives nothing.
 double acceleration_along(const Case& c) {
   if (c.gravity.mode == GravityMode::balanced) return 0.0;
   const Vec3 gravity = gravity_vector(c.gravity);
-  return std::hypot(drives_flow(c, 0) ? gravity.x() : 0.0, drives_flow(c, 1) ? gravity.y() : 0.0);
+  const auto driven = [&](int axis) { return drives_flow(c, axis) && !inlet_sets_flow(c, axis) ? gravity[axis] : 0.0; };
+  return std::hypot(driven(0), driven(1));
 }
 
 struct SlopeFlow {

@@ -16,7 +16,7 @@
 //                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
 //
 // z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor. Gravity drives no flow
-// across walls.
+// across walls, and none along an axis where an inlet sets how much flows.
 //
 // Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
 // U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, that of the channel, and

@@ -1,5 +1,6 @@
 #include "driver/estimate/flow_estimate.hpp"
 
+#include "driver/estimate/bed_flow.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/text_search.hpp"
@@ -211,6 +212,21 @@ TEST(FlowEstimate, OfAnInletOverABedIsThatOfItsDischarge) {
   EXPECT_NEAR(passing.spin_up, c.domain.size.x() / mean, 1e-12);
   c.domain.faces[x_low].recycling_plane = 0.5 * c.domain.size.x();  // the flow develops, as in a periodic box
   EXPECT_NEAR(flow_estimate(c).spin_up, 10.0 * depth / passing.friction_velocity, 1e-9);
+}
+
+// The inlet sets how much flows, on a steep slope as on none: what the slope drives in excess, pressure balances.
+TEST(FlowEstimate, OfAnInletDoesNotDependOnTheSlope) {
+  Case level = wide_bed(0.0);
+  level.grains[0].fixed = true;
+  level.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.1, 0.0, 0.0)};
+  level.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  Case steep = level;
+  steep.gravity.slope = 0.05;
+  const FlowEstimate flow = flow_estimate(steep);
+  EXPECT_EQ(flow.drive, FlowCause::inlet);
+  EXPECT_NEAR(flow.bulk_velocity, 0.1 * steep.domain.size.z() / (steep.domain.size.z() - settled_height(steep)), 1e-12);
+  EXPECT_NEAR(flow.speed, flow_estimate(level).speed, 1e-12);
+  EXPECT_EQ(estimated_velocity(steep), 0.0);
 }
 
 TEST(Warnings, OfWaterAtRestThatAnInletSetsGoing) {
