@@ -94,6 +94,36 @@ void make_bed(Case& c, const io::YamlDocument& document, bool height_follows, co
   fill_in_surfaces(c, document, ranks);
 }
 
+// Throws where the flow that the section asks for does not follow from a slope over a bed.
+void refuse_other_flows(const Case& c, const FlowFilledIn& question, const io::YamlDocument& document) {
+  if (!drives_flow(c, 0))
+    throw document.error("flow",
+                         "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "
+                         "periodic");
+  if (periodic_axes(c.domain)[2])
+    throw document.error("flow",
+                         "a box that is periodic along z has no bed; give domain.boundaries a bottom and a top, or "
+                         "remove the section");
+  if (!(gravity_vector(c.gravity).z() < 0.0))
+    throw document.error("flow",
+                         "without gravity the grains make no bed; give gravity.magnitude in m/s^2, or remove the "
+                         "section");
+  if (!c.flow->shields_number) return;
+  if (walls_drive(c))
+    throw document.error(
+        "flow.shields_number",
+        "a top or side wall that moves along x drives the water, too, and the stress on the bed does not "
+        "follow from the slope; leave out this key, and give gravity.slope");
+  if (inlet_sets_flow(c, 0))
+    throw document.error("flow.shields_number",
+                         "an inlet across x sets how much flows, and the stress on the bed does not follow from the "
+                         "slope; leave out this key, or make domain.boundaries.x periodic");
+  if (!question.slope && !(c.gravity.slope.value_or(0.0) > 0.0))
+    throw document.error("gravity.slope",
+                         "the depth follows from it and from flow.shields_number; give a slope above 0, downhill along "
+                         "x, or flow.depth in its place");
+}
+
 // m, of the water that has the Shields number on the slope of the case.
 double depth_for(const Case& c, double stress_height, const io::YamlDocument& document) {
   const double radius = stress_height / std::sin(std::atan(*c.gravity.slope));
@@ -127,15 +157,7 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
   io::read_document(tried, c);  // refuses misspelt keys, before any is missed
   const FlowFilledIn question = question_of(document);
   make_bed(c, tried, question.height, known, ranks);
-  if (!drives_flow(c, 0))
-    throw document.error("flow",
-                         "walls close the box along x, and no slope drives a flow; give domain.boundaries.x: "
-                         "periodic");
-  if (c.flow->shields_number && walls_drive(c))
-    throw document.error(
-        "flow.shields_number",
-        "a top or side wall that moves along x drives the water, too, and the stress on the bed does not "
-        "follow from the slope; leave out this key, and give gravity.slope");
+  refuse_other_flows(c, question, document);
   const ReferenceGrain grain = reference_grain(c);
   const double excess = grain.density / c.fluid.density - 1.0, bed = settled_height(c);
   if (excess <= neutral_density)

@@ -133,5 +133,20 @@ TEST(DerivedFlow, RefusesMoreOrLessThanOneFlow) {
   refused({"flow={}"}, "the section is empty");
 }
 
+TEST(DerivedFlow, RefusesFlowsThatDoNotFollowFromASlope) {
+  const auto refused = [](const std::vector<std::string>& overrides, const std::string& reason) {
+    const std::string said = refusal_of(overrides);
+    EXPECT_NE(said.find(reason), std::string::npos) << said;
+  };
+  for (const std::string slope : {"0", "-0.01"})
+    refused({"flow.depth=null", "gravity.slope=" + slope}, "give a slope above 0");
+  const std::string inlet =
+      "domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: pressure_outlet, y: periodic, "
+      "bottom: no_slip, top: free_slip}";
+  refused({inlet}, "an inlet across x sets how much flows");
+  refused({"domain.boundaries.bottom=periodic", "domain.boundaries.top=periodic"}, "has no bed");
+  refused({"gravity.magnitude=0"}, "the grains make no bed");
+}
+
 }  // namespace
 }  // namespace thalweg::driver::derived_flow_test
