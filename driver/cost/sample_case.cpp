@@ -2,6 +2,7 @@
 
 #include "beds/files/bed_import.hpp"
 #include "core/state/bed.hpp"
+#include "dem/laws/contact_laws.hpp"
 #include "driver/estimate/bed_flow.hpp"
 
 #include <algorithm>
@@ -89,6 +90,23 @@ beds::Population grains_of(const Case& c, const Vec3& size, double share) {
   return grains;
 }
 
+// Softens the contacts of the sample as far as the step of the case requires: its grains have all sizes, also of those
+// that the case holds, but one density and one material.
+void suit_contacts_to_step(Case& s) {
+  constexpr double margin = 0.99;
+  const double step = grain_time_step(s), faster = margin * longest_contact_step(s) / step;
+  if (faster < margin) {  // the stiffness by a power, the dashpot by its root: the restitution stays
+    dem::with_spring_law(s.contact.law, [&](auto spring) {
+      using Spring = typename decltype(spring)::type;
+      s.contact.*Spring::stiffness *= std::pow(faster, Spring::impacts_per_stiffness);
+    });
+    s.contact.tangential_stiffness *= faster * faster;
+    if (s.contact.damping) *s.contact.damping *= faster;
+  }
+  if (const double longest = longest_lubrication_step(s); step > longest)
+    s.coupling.lubrication->minimum_gap *= step / longest / margin;
+}
+
 }  // namespace
 
 Sample sample_of(const Case& c) {
@@ -99,11 +117,16 @@ Sample sample_of(const Case& c) {
   for (const int face : {x_low, x_high})
     s.domain.faces[static_cast<std::size_t>(face)] = {.type = lbm::FaceType::periodic};
   s.grains.clear();
+  s.supplies.clear();
+  s.sinks.clear();
   s.walls.clear();
   s.solids.clear();
+  s.contact.walls.reset();
   s.initial = {};
   s.run.until_at_rest.reset();
-  if (!c.grains.empty()) s.grains.push_back(grains_of(c, s.domain.size, sample.share));
+  if (c.grains.empty()) return sample;
+  s.grains.push_back(grains_of(c, s.domain.size, sample.share));
+  suit_contacts_to_step(s);
   return sample;
 }
 

@@ -11,8 +11,9 @@ struct Sample {
 };
 
 // Sample of a case with grains, a fluid or both: the same faces across y and z, and the same number of grains per
-// length. Grains that gravity holds down lie on the floor, touching, on a cubic lattice. Clumps become spheres of their
-// volume; of mixed sizes only the largest touch.
+// length, of one density and material. Grains that gravity holds down lie on the floor, touching, on a cubic lattice.
+// Clumps become spheres of their volume; of mixed sizes only the largest touch. No grains come in or leave. Contacts
+// are no stiffer than the step allows.
 Sample sample_of(const Case& c);
 
 }  // namespace thalweg::driver

@@ -118,5 +118,40 @@ TEST(SampleCase, IsAShortPieceOfTheWhole) {
   EXPECT_NEAR(cells_of(sample.c.domain)[0] * c.domain.spacing, sample.c.domain.size.x(), 1e-12);
 }
 
+// Their regions may lie beyond its end, and their populations are not in it.
+TEST(SampleCase, HasNeitherSuppliesNorSinks) {
+  Case c = wide_bed();
+  c.grains.push_back(c.grains.front());
+  beds::SupplyKeys supply;
+  supply.population = 1;
+  supply.rate = 10.0;
+  c.supplies = {supply};
+  c.sinks.emplace_back().region = {Vec3(0.110, 0.0, 0.0), c.domain.size};
+  const Sample sample = sample_of(c);
+  EXPECT_TRUE(sample.c.supplies.empty());
+  EXPECT_TRUE(sample.c.sinks.empty());
+}
+
+// Grains that the case holds are free in the sample, and those with a material of their own have that of all.
+TEST(SampleCase, HasContactsThatItsStepCanFollow) {
+  const auto expect_a_step_short_enough = [](const Case& c) {
+    const Sample sample = sample_of(c);
+    EXPECT_EQ(grain_time_step(sample.c), grain_time_step(c));
+    EXPECT_LE(grain_time_step(sample.c), longest_contact_step(sample.c));
+  };
+  Case rough = wide_bed();
+  beds::Population fine = rough.grains.front();
+  fine.diameter = 1.5e-3;
+  fine.fixed = true;
+  rough.grains.push_back(fine);
+  rough.coupling.grain_steps_per_fluid_step = sub_steps_needed(rough);
+  expect_a_step_short_enough(rough);
+  Case soft = wide_bed();
+  soft.grains.front().contact.emplace().normal_stiffness = 200.0;
+  soft.coupling.grain_steps_per_fluid_step = sub_steps_needed(soft);
+  ASSERT_GT(grain_time_step(soft), shortest_contact(wide_bed()) / 20.0);
+  expect_a_step_short_enough(soft);
+}
+
 }  // namespace
 }  // namespace thalweg::driver::performance_model_test
