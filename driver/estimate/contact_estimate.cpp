@@ -33,12 +33,25 @@ double overlap_in_impact(const dem::ContactParameters& material, double mass, do
   });
 }
 
-// m/s, of free grains that start towards or past those of another population.
+// m/s, at the start; zero of grains that move together as a body.
+Vec3 initial_velocity(const beds::Population& grains) {
+  return grains.held() ? grains.prescribed_velocity.value_or(Vec3(Vec3::Zero())) : grains.velocity;
+}
+
+bool any_wall(const Case& c) {
+  const std::array<bool, 3> periodic = periodic_axes(c.domain);
+  return !c.walls.empty() || !c.solids.empty() || std::find(periodic.begin(), periodic.end(), false) != periodic.end();
+}
+
+// m/s, of free grains that start towards or past those of another population, or a wall.
 double given_speed(const Case& c) {
   double fastest = 0.0;
-  for (const beds::Population& one : c.grains)
+  for (const beds::Population& one : c.grains) {
+    if (one.held()) continue;
+    if (any_wall(c)) fastest = std::max(fastest, one.velocity.norm());
     for (const beds::Population& other : c.grains)
-      if (!one.held() && !other.held()) fastest = std::max(fastest, (one.velocity - other.velocity).norm());
+      fastest = std::max(fastest, (one.velocity - initial_velocity(other)).norm());
+  }
   return fastest;
 }
 

@@ -66,5 +66,24 @@ TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
   EXPECT_NEAR(mixed.under_weight, alike.under_weight, 0.01 * alike.under_weight);
 }
 
+// Grains that are thrown at a wall or at held grains meet them as fast as they are thrown.
+TEST(Overlaps, OfGrainsThatAreThrown) {
+  Case c = bed();
+  const double falling = expected_overlaps(c).speed;
+  c.grains.front().velocity = Vec3(3.0, 0.0, -4.0);  // at the floor
+  EXPECT_GT(5.0, falling);
+  EXPECT_NEAR(expected_overlaps(c).speed, 5.0, 1e-12);
+  for (const FaceIndex face : {bottom, top}) c.domain.faces[face].type = lbm::FaceType::periodic;
+  EXPECT_NEAR(expected_overlaps(c).speed, falling, 1e-12);  // they all fly alike
+  beds::Population target = c.grains.front();
+  target.velocity = Vec3::Zero();
+  target.fixed = true;
+  c.grains.push_back(target);
+  EXPECT_NEAR(expected_overlaps(c).speed, 5.0, 1e-12);
+  c.grains.back().fixed = false;
+  c.grains.back().prescribed_velocity = Vec3(-3.0, 0.0, 4.0);  // towards them
+  EXPECT_NEAR(expected_overlaps(c).speed, 10.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace thalweg::driver::contact_estimate_test
