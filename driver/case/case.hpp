@@ -158,6 +158,8 @@ struct DisksCase {
 struct FlowFilledIn {
   bool height = false, slope = false;  // third number of domain.size, a whole number of cells; gravity.slope
   std::string text;                    // these keys in words; empty: there is no section
+  // Given with gravity.slope, from which two the depth of the water follows; none: the depth does not depend on them.
+  std::optional<double> shields_number = std::nullopt;
 };
 
 // Keys that the case omits and that are derived from others (estimate/filled_in.hpp), so they must be derived again

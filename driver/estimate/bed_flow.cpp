@@ -139,6 +139,13 @@ double depth_of(const Case& c, double hydraulic_radius) {
   return left > 0.0 ? surfaces(c) * hydraulic_radius * width / left : std::numeric_limits<double>::infinity();
 }
 
+double depth_with(const Case& c, double shields) {
+  const ReferenceGrain grain = reference_grain(c);
+  const Vec3 gravity = gravity_vector(c.gravity);
+  const double excess = grain.density / c.fluid.density - 1.0;
+  return depth_of(c, excess * grain.diameter * shields * gravity.norm() / gravity.x());
+}
+
 double settled_fraction(const Case& c) {
   if (c.grains.empty()) return beds::settled_bed;
   const double usual = beds::settled_fraction(grain_box(c), reference_grain(c).diameter, c.disks.has_value());

@@ -78,6 +78,9 @@ double hydraulic_radius(const Case& c, double depth);
 // m, of the flow that has this hydraulic radius (m); infinite where none is so deep.
 double depth_of(const Case& c, double hydraulic_radius);
 
+// m, of the flow that has this Shields number on the slope of the case, which leads down along x.
+double depth_with(const Case& c, double shields);
+
 // Solid fraction of a settled bed: that of beds::settled_fraction(), or what a fill says of its population.
 double settled_fraction(const Case& c);
 

@@ -31,7 +31,7 @@ FlowFilledIn question_of(const io::YamlDocument& document) {
   const bool slope = document.find("gravity.slope");
   if (!shields && !depth)
     throw document.error("flow", "the section is empty; give shields_number, for example 0.05, depth in m, or both");
-  const FlowFilledIn question{size && size->items.size() == 2, shields && !(slope && !depth), {}};
+  const FlowFilledIn question{size && size->items.size() == 2, shields && !(slope && !depth), {}, {}};
   if (document.find("gravity.vector"))
     throw document.error("gravity.vector", "the section flow sets the slope; give gravity.magnitude in m/s^2 instead");
   if (document.find("fluid.mean_velocity"))
@@ -169,6 +169,7 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
   std::vector<std::string> follows;
   double depth = c.domain.size.z() - bed;
   if (question.height) {
+    if (!c.flow->depth) derived.filled_in.shields_number = c.flow->shields_number;
     depth = c.flow->depth ? *c.flow->depth : depth_for(c, stress_height, document);
     const double height = c.domain.spacing * std::round((bed + depth) / c.domain.spacing);
     depth = height - bed;

@@ -5,6 +5,7 @@
 #include "core/base/shell_word.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/input/case_reader.hpp"
@@ -261,6 +262,8 @@ Case without_warnings(const Experiment& experiment, const std::filesystem::path&
       take_over(remedy, experiment, draft);
       continue;
     }
+    if (stress_ratio_at_base(c) > bulk_friction(c))  // on any slope
+      throw InputError("with so large a Shields number the bed would slide as a whole: give a smaller --shields.");
     try {
       refuse_impossible_grains(c);
       return c;

@@ -160,6 +160,15 @@ Warnings laminar_flow(const Case& c) {
        {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}}}};
 }
 
+// Where the depth follows from the slope and a Shields number, water on a gentler slope is deeper.
+void set_slope(Case& c, double slope) {
+  c.gravity.slope = slope;
+  if (const std::optional<double> shields = c.filled_in.flow.shields_number) {
+    const double height = settled_height(c) + depth_with(c, *shields);
+    c.domain.size.z() = c.domain.spacing * std::round(height / c.domain.spacing);
+  }
+}
+
 // By the key that the case has: where the slope follows from a Shields number, that one.
 Change slope_change(const Case& c, double slope) {
   if (c.filled_in.flow.slope) {
@@ -169,19 +178,45 @@ Change slope_change(const Case& c, double slope) {
                          [](Case& other, double to) { other.gravity.slope = slope_for(flow_numbers(other), to); });
   }
   if (!c.gravity.vector)
-    return number_change("gravity.slope", slope, 2, slope < 0.0 ? Rounding::up : Rounding::down,
-                         [](Case& other, double to) { other.gravity.slope = to; });
+    return number_change("gravity.slope", slope, 2, slope < 0.0 ? Rounding::up : Rounding::down, set_slope);
   const Vec3 gravity = *c.gravity.vector;
   const std::string along = (slope < 0.0 ? at_least_text : at_most_text)(slope * -gravity.z(), 2);
   return word_change("gravity.vector", fmt::format("[{}, {:.9g}, {:.9g}]", along, gravity.y(), gravity.z()),
                      [x = std::stod(along)](Case& other) { other.gravity.vector->x() = x; });
 }
 
+// The steepest slope with which the stress ratio at the base of the bed is no larger: in proportion, or where the depth
+// changes with it by bisection; 0: there is none.
+double slope_with_ratio(const Case& c, double ratio) {
+  if (!c.filled_in.flow.shields_number)
+    return gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * ratio / stress_ratio_at_base(c);
+  const auto holds = [&](double slope) {
+    Case other = c;
+    set_slope(other, slope);
+    return stress_ratio_at_base(other) <= ratio;
+  };
+  double low = 1e-3 * *c.gravity.slope, high = *c.gravity.slope;
+  if (!holds(low)) return 0.0;
+  constexpr int halvings = 20;
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 Warnings sliding_bed(const Case& c) {
   if (c.system != SystemKind::grains && c.system != SystemKind::resolved) return {};
   const double ratio = stress_ratio_at_base(c), held = bulk_friction(c);
   if (ratio <= held) return {};
-  const double slope = gravity_vector(c.gravity).x() / -gravity_vector(c.gravity).z() * held / ratio;
+  const double slope = slope_with_ratio(c, held);
+  if (slope == 0.0)
+    return {{fmt::format("The Shields number requires a shear stress of {:.2g} times the normal stress at the base of "
+                         "the bed, on gentle slopes as well, and grains of this friction sustain about {:.2g}, so the "
+                         "bed slides as a whole",
+                         ratio, held),
+             {},
+             "a smaller flow.shields_number"}};
   return {{fmt::format("The slope requires a shear stress of {:.2g} times the normal stress at the base of the bed, "
                        "and grains of this friction sustain about {:.2g}, so the bed slides as a whole",
                        ratio, held),

@@ -113,6 +113,7 @@ class NewCase(ProgramTest):
             (["--diameter", 0.005, "--shields", 5, "--depth", 0.01], "no slope gives --shields 5"),
             (["--diameter", 0.005, "--shields", 0.5, "--depth", 0.01], "would slide as a whole: give --shields 0."),
             (["--diameter", 0.005, "--slope", 0.5, "--depth", 0.03], "would slide as a whole: give --slope 0."),
+            (["--diameter", 0.005, "--shields", 0.8, "--slope", 0.2, "--layers", 2], "give a smaller --shields"),
             (["--diameter", 0.005, "--shields", 0.1, "--slope", 0.01, "--width", 0.02], "however deep"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.002], "less than a diameter"),
             (["--diameter", 0.005, "--shields", 0.05, "--depth", 0.006, "--layers", 40], "or fewer --layers"),
