@@ -88,10 +88,11 @@ double solid_frames(const Case& c) {
   return bytes * frames;
 }
 
+// By wall time there may be as many as are kept, however rare those by simulated time are.
 double checkpoints(const Case& c) {
   const io::CheckpointOutputKeys& keys = c.output.checkpoint;
   const double most = static_cast<double>(keys.keep) + 1.0;
-  const double written = keys.every > 0.0 ? std::ceil(c.run.until / keys.every) : keys.every_wall > 0.0 ? most : 1.0;
+  const double written = keys.every_wall > 0.0 ? most : keys.every > 0.0 ? std::ceil(c.run.until / keys.every) : 1.0;
   return bytes_of_checkpoint(c) * std::min(written, most);
 }
 

@@ -93,6 +93,10 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   EXPECT_TRUE(any_contains(warnings(of_parts), "output.fluid_parts.0.every = 1e-09 s is less than a step"));
   c.output.checkpoint.every = 0.0;
   EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints / 3.0, 1.0);
+  c.output.checkpoint.every = 20.0;
+  EXPECT_NEAR(disk_space(c).checkpoints, 2.0 * space.checkpoints / 3.0, 1.0);
+  c.output.checkpoint.every_wall = 1800.0;
+  EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints, 1.0);
 }
 
 // A grain has six numbers for its place, radius and vertex in any frame.
