@@ -126,11 +126,18 @@ double turbulent_velocity(const Case& c, const Channel& channel, double along) {
 
 // m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, an inlet sets how
 // much flows whatever the slope, and balanced gravity drives nothing.
-double acceleration_along(const Case& c) {
-  if (c.gravity.mode == GravityMode::balanced) return 0.0;
+Vec3 driving_gravity(const Case& c) {
+  Vec3 driving = Vec3::Zero();
+  if (c.gravity.mode == GravityMode::balanced) return driving;
   const Vec3 gravity = gravity_vector(c.gravity);
-  const auto driven = [&](int axis) { return drives_flow(c, axis) && !inlet_sets_flow(c, axis) ? gravity[axis] : 0.0; };
-  return std::hypot(driven(0), driven(1));
+  for (const int axis : {0, 1})
+    if (drives_flow(c, axis) && !inlet_sets_flow(c, axis)) driving[axis] = gravity[axis];
+  return driving;
+}
+
+double acceleration_along(const Case& c) {
+  const Vec3 driving = driving_gravity(c);
+  return std::hypot(driving.x(), driving.y());
 }
 
 struct SlopeFlow {
@@ -231,12 +238,13 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
   return flow;
 }
 
-// Along x: 1, or -1.
+// Cosine of the angle from x to the flow of a drive.
 double way_of(const Case& c, FlowCause drive) {
   const auto sign = [](double velocity) { return velocity < 0.0 ? -1.0 : 1.0; };
-  if (drive == FlowCause::slope) return sign(gravity_vector(c.gravity).x());
+  const auto cosine = [](const Vec3& along) { return along.x() / std::hypot(along.x(), along.y()); };
+  if (drive == FlowCause::slope) return cosine(driving_gravity(c));
   if (drive == FlowCause::mean_velocity) return sign(c.fluid.mean_velocity->velocity);
-  if (drive == FlowCause::moving_face) return sign(c.domain.faces[top].velocity.x());
+  if (drive == FlowCause::moving_face) return cosine(c.domain.faces[top].velocity);
   return drive == FlowCause::inlet ? sign(inlet_of(c)->velocity.x()) : 1.0;
 }
 

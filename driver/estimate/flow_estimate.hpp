@@ -62,7 +62,7 @@ struct FlowEstimate {
   // Flow along the bed or a bare floor: of the drives slope, mean velocity, moving top and inlet, the one with the
   // largest friction velocity. Undefined without one.
   FlowCause drive = FlowCause::none;
-  double way = 1.0;                // along x: 1, or -1 to the left
+  double way = 1.0;                // along x: 1, -1 to the left; of an oblique flow the cosine, 0 across
   double depth = 0.0;              // m
   double bulk_velocity = 0.0;      // m/s, mean over the depth
   double friction_velocity = 0.0;  // m/s

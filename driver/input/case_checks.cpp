@@ -112,8 +112,8 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
   const coupling::LogProfileKeys& profile = *c.initial.fluid.log_profile;
   if (c.filled_in.profile.shear_velocity && *profile.shear_velocity == 0.0)
     throw document.error("initial.fluid.log_profile",
-                         "nothing drives the water along the bed, so its shear velocity does not follow from the case; "
-                         "give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
+                         "nothing drives the water along the bed in x, so its shear velocity does not follow from the "
+                         "case; give shear_velocity in m/s, a gravity.slope that drives it, or initial.fluid: rest");
   const double depth = c.domain.size[2] - *profile.bed_height;
   if (depth > 0.0 && depth <= *profile.roughness)
     throw document.error(

@@ -164,6 +164,7 @@ Warnings other_start(const Case& c) {
   if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile) return {};
   const double given = *c.initial.fluid.log_profile->shear_velocity, driven = flow.way * flow.friction_velocity,
                ratio = given / driven;
+  if (given == driven) return {};
   constexpr double meant_to_be_slow = 0.25;  // in a run that is too short for the flow anyway
   if ((flow.still_gaining && ratio < meant_to_be_slow) || (ratio >= 0.8 && ratio <= 1.25)) return {};
   const Change start = exact_change("initial.fluid.log_profile.shear_velocity", driven, 3, [](Case& other, double to) {

@@ -349,6 +349,13 @@ TEST(LogProfile, GoesTheWayOfTheFlow) {
   fed.domain.faces[x_high].type = lbm::FaceType::velocity_inlet;
   fed.domain.faces[x_high].velocity = Vec3(-0.1, 0.0, 0.0);
   EXPECT_LT(shear_velocity(fed), 0.0);
+  Case across = wide_bed();  // the profile is along x
+  across.gravity.magnitude.reset();
+  across.gravity.slope.reset();
+  across.gravity.vector = Vec3(0.0, 0.15, -9.8);
+  EXPECT_EQ(shear_velocity(across), 0.0);
+  across.gravity.vector = Vec3(-0.09, 0.12, -9.8);
+  EXPECT_NEAR(shear_velocity(across), -0.6 * flow_estimate(across).friction_velocity, 1e-12);
 }
 
 // A log profile that is left to the program, in laminar flow and under a lid, where the flow has another profile.
