@@ -133,13 +133,13 @@ Warnings sudden_inlet(const Case& c) {
            advice, "a start with the velocity of the inlet"}};
 }
 
-// s, in which the highest grains of a population reach the bed.
+// s, in which the highest grains of a population reach the bed, the finest of them last.
 double settling_time(const Case& c, const beds::Population& grains) {
   const double highest = grains.placement.region ? grains.placement.region->upper.z() : c.domain.size.z();
   const double fall = std::max(0.0, highest - settled_height(c)), gravity = -gravity_vector(c.gravity).z();
   if (!has_fluid(c)) return std::sqrt(2.0 * fall / gravity);
   return fall /
-         settling_velocity(grains.diameter, grains.density / c.fluid.density, gravity, c.fluid.kinematic_viscosity);
+         settling_velocity(grains.finest(), grains.density / c.fluid.density, gravity, c.fluid.kinematic_viscosity);
 }
 
 Warnings unsettled_grains(const Case& c) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -300,6 +301,17 @@ TEST(Warnings, OfThePlan) {
   c.run.until = 0.4;  // H/u_tau = 0.51 s
   EXPECT_TRUE(any_contains(warnings(c), "one turnover"));
   EXPECT_FALSE(any_contains(warnings(c), "developed"));  // it is
+}
+
+// The finest grains of a population, not those of its median, are the last that come down.
+TEST(Warnings, OfGrainsThatStillFall) {
+  Case c = wide_bed(0.0);
+  c.run.until = 0.2;  // 0.04 m at 0.48 m/s take 0.09 s
+  EXPECT_FALSE(any_contains(warnings(c), "The highest grains fall"));
+  beds::Population& grains = c.grains.front();
+  grains.diameters.assign(static_cast<std::size_t>(grains.count), d);
+  std::fill_n(grains.diameters.begin(), grains.count / 2, 0.05 * d);  // 0.035 m/s
+  EXPECT_TRUE(any_contains(warnings(c), "The highest grains fall"));
 }
 
 // A column of grains under water, by hand: shear stress rho_f g_x H + (rho_f + 0.6 excess) g_x h.
