@@ -150,11 +150,18 @@ double settled_fraction(const Case& c) {
   if (c.grains.empty()) return beds::settled_bed;
   const double usual = beds::settled_fraction(grain_box(c), reference_grain(c).diameter, c.disks.has_value());
   double solid = 0.0, bed = 0.0;  // m^3
+  bool other = false;             // a fill says otherwise
   for (const beds::Population& population : c.grains) {
     if (!makes_a_bed(c, population)) continue;
     const double volume = population.volume();
     solid += volume;
     bed += volume / (population.settled_porosity ? 1.0 - *population.settled_porosity : usual);
+    other = other || population.settled_porosity;
+  }
+  if (other) {  // obstacles are of no fill
+    const double obstacles = obstacles_of(c).volume_of_grains;
+    solid -= obstacles;
+    bed -= obstacles / usual;
   }
   return bed > 0.0 ? solid / bed : usual;
 }

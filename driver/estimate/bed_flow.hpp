@@ -81,7 +81,8 @@ double depth_of(const Case& c, double hydraulic_radius);
 // m, of the flow that has this Shields number on the slope of the case, which leads down along x.
 double depth_with(const Case& c, double shields);
 
-// Solid fraction of a settled bed: that of beds::settled_fraction(), or what a fill says of its population.
+// Solid fraction of a settled bed: that of beds::settled_fraction(), or what a fill says of its population; without the
+// obstacles that stand in it.
 double settled_fraction(const Case& c);
 
 }  // namespace thalweg::driver

@@ -56,6 +56,14 @@ TEST(Obstacles, ASillTakesItsRoomInTheBedOnce) {
   EXPECT_GT(volume - grains, section(7.75, 4.0) * 48e-9 * 0.998);
 }
 
+// They stand in the bed and are not of it: its solid fraction is that of its fill.
+TEST(Obstacles, HaveNoShareInTheSolidFraction) {
+  const std::string porosity = "grains.1.fill.porosity=0.3";
+  const Case c = testing::read_text(bed_with(sill()), {porosity});
+  EXPECT_NEAR(settled_fraction(c), 0.7, 1e-12);
+  EXPECT_NEAR(settled_height(c), settled_height(testing::read_text(bed_with(sill()))), 1e-4);  // a fill of 12 mm each
+}
+
 // A pier through the whole depth: only what is in the bed takes room, half a sphere at the floor and above it nearly a
 // cylinder, pi (r^2 - s^2/12) of spheres s apart.
 TEST(Obstacles, APierIsNoBedAboveTheBed) {
