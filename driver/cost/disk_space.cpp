@@ -101,9 +101,9 @@ double records(const Case& c) {
   double bytes = 0.0;
   if (const auto& tracks = c.analysis.observers.of<analysis::TracksKeys>()) {
     const double grains = tracks->grains.empty()
-                              ? std::ceil(static_cast<double>(grain_count(c)) / static_cast<double>(tracks->one_in))
+                              ? std::ceil(static_cast<double>(grain_rows(c)) / static_cast<double>(tracks->one_in))
                               : static_cast<double>(tracks->grains.size());
-    bytes += times_in(c, tracks->every) * grains * 144.0;
+    bytes += times_in(c, tracks->every) * grains * (grain_output_facts(c).clumps ? 176.0 : 144.0);
   }
   if (const auto& probes = c.analysis.observers.of<analysis::ProbesKeys>()) {
     double points = static_cast<double>(probes->points.size());

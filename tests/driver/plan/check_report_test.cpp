@@ -99,6 +99,14 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   EXPECT_NEAR(disk_space(c).checkpoints, space.checkpoints, 1.0);
 }
 
+// Members of clumps are tracked as the spheres they are, with the orientation of their clump.
+TEST(DiskSpace, CountsTheTracksOfMembers) {
+  const std::string shape =
+      "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 1.0}, {position: [0.5, 0, 0], diameter: 1.0}]}";
+  const Case c = testing::read_text(testing::flume, {shape, "analysis={tracks: {every: 0.01}}"});
+  EXPECT_NEAR(disk_space(c).records, 301.0 * (2.0 * 150.0 + 2.0) * 176.0, 1.0);
+}
+
 // A grain has six numbers for its place, radius and vertex in any frame.
 TEST(DiskSpace, CountsTheGrainsAndFieldsOfParts) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
