@@ -102,9 +102,10 @@ Overlaps expected_overlaps(const Case& c) {
   for (std::size_t p = 0; p < c.grains.size(); ++p)
     add_overlaps(c, c.grains[p], materials[static_cast<std::size_t>(beds::material_of(c.grains, p))], height, of_two,
                  found);
-  // Of walls softer than the grains: by the law of elastic spheres grain and wall share the overlap.
+  // Of walls softer than the grains, where a case gives their stiffness: by the law of elastic spheres grain and wall
+  // share the overlap.
   const std::optional<dem::ContactParameters> walls = beds::wall_material_of(c.contact);
-  if (walls && c.contact.law == dem::Law::linear)
+  if (walls && c.contact.walls->normal_stiffness && c.contact.law == dem::Law::linear)
     for (const beds::Population& grains : c.grains) add_overlaps(c, grains, *walls, height, with_wall, found);
   return found;
 }

@@ -7,7 +7,7 @@
 
 namespace thalweg::driver {
 
-// Overlaps of the softest contact between two grains of a population, or with walls that have a material of their own
+// Overlaps of the softest contact between two grains of a population, or with walls that have a stiffness of their own
 // (linear law), over their diameter; 0 without grains.
 struct Overlaps {
   double under_weight;  // at the base of the settled bed: each grain carries the weight above its own d^2

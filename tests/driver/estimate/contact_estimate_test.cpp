@@ -45,6 +45,8 @@ TEST(Overlaps, OfSofterWallsAreTheirs) {
   c.contact.normal_stiffness = 20000.0;
   const Overlaps of_grains = expected_overlaps(c);
   c.contact.walls.emplace();
+  c.contact.walls->restitution = 0.5;  // as soft as the grains
+  EXPECT_EQ(expected_overlaps(c).in_impact, of_grains.in_impact);
   c.contact.walls->normal_stiffness = 100.0;
   const Overlaps with_walls = expected_overlaps(c);
   EXPECT_NEAR(with_walls.in_impact, std::sqrt(2.0 * 200.0) * of_grains.in_impact, 1e-9 * with_walls.in_impact);
