@@ -54,19 +54,23 @@ double lowest_grain(const Case& c) {
   return lowest;
 }
 
-// True if above every point of the floor a solid lies over a place for grains.
+// True if above every point of the floor a solid lies over a place for grains, and water over the solid; else it is a
+// lid on the flow.
 bool lie_over_the_grains(const Case& c, const SolidCells& cells) {
   const double lowest = lowest_grain(c);
+  bool water_above = false;
   for (int i = 0; i < cells.size()[0]; ++i)
     for (int j = 0; j < cells.size()[1]; ++j) {
       bool place = false, covered = false;
-      for (int k = 0; k < cells.size()[2] && !covered; ++k) {
-        covered = place && cells.covered({i, j, k});
-        place = place || (cells.height(k) > lowest && !cells.covered({i, j, k}));
+      for (int k = 0; k < cells.size()[2]; ++k) {
+        const bool solid = cells.covered({i, j, k});
+        water_above = water_above || (covered && !solid);
+        covered = covered || (place && solid);
+        place = place || (cells.height(k) > lowest && !solid);
       }
       if (!covered) return false;
     }
-  return true;
+  return water_above;
 }
 
 }  // namespace

@@ -129,6 +129,7 @@ TEST(SolidWarnings, OfAPlateOverAllOfTheBed) {
   const std::string over = said(bed, {box({-0.001, -0.001, 0.012}, {0.041, 0.021, 0.014})});
   EXPECT_TRUE(contains(over, "covers all of the bed")) << over;
   EXPECT_EQ(said(bed, {box({-0.001, -0.001, 0.012}, {0.038, 0.0188, 0.014})}), "");  // it leaves a gap
+  EXPECT_EQ(said(bed, {box({-0.001, -0.001, 0.012}, {0.041, 0.021, 0.021})}), "");   // a lid on the flow
   EXPECT_EQ(said(bed, {box({-0.001, -0.001, -0.001}, {0.041, 0.021, 0.003})}), "");  // a floor beneath
   EXPECT_EQ(said(bed, {box({-0.001, -0.001, 0.002}, {0.041, 0.021, 0.003})},         // a false floor
                  {"grains.0.placement.region={lower: [0, 0, 0.003], upper: [0.04, 0.02, 0.02]}"}),
