@@ -108,10 +108,13 @@ void add_others(CLI::App& app, Command& command) {
       ->check(positive_number())
       ->type_name("N,N,...");
   check->add_option("--until", command.until, "Simulated time at which the run is to end, in s, instead of run.until");
-  check->add_flag("--solve", command.solve,
-                  "Print changes of keys that remove every warning except those that need your decision");
+  check
+      ->add_flag("--solve", command.solve,
+                 "Print changes of keys that remove every warning except those that need your decision")
+      ->excludes("--ranks");
   check->add_flag("--json", command.json, "Print the figures of the report, its lines and its warnings as JSON")
-      ->excludes("--solve");
+      ->excludes("--solve")
+      ->excludes("--ranks");
   check->add_option("--latency", command.network.latency, "Network latency, s")
       ->check(positive_number())
       ->capture_default_str();

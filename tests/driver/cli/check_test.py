@@ -80,6 +80,8 @@ class Check(ProgramTest):
 
     def test_solve_prints_keys_and_json_figures_but_not_both(self):
         self.assert_refused("check", self.case, "--solve", "--json", words=["--solve excludes --json"])
+        for option in ("--solve", "--json"):   # the table of ranks has neither
+            self.assert_refused("check", self.case, option, "--ranks", "1", words=["excludes"])
 
     def test_json_has_the_shields_number_of_the_lines(self):
         case = Path(__file__).resolve().parents[3] / "cases/quickstart/case.yaml"
