@@ -6,6 +6,7 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,9 +44,9 @@ bool any_wall(const Case& c) {
   return !c.walls.empty() || !c.solids.empty() || std::find(periodic.begin(), periodic.end(), false) != periodic.end();
 }
 
-// m/s, of free grains that start towards or past those of another population, or a wall.
+// m/s, of free grains that start towards or past those of another population, or a wall, or come in.
 double given_speed(const Case& c) {
-  double fastest = 0.0;
+  double fastest = fastest_supply(c);
   for (const beds::Population& one : c.grains) {
     if (one.held()) continue;
     if (any_wall(c)) fastest = std::max(fastest, one.velocity.norm());

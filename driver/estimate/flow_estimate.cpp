@@ -5,6 +5,7 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/laminar_channel.hpp"
 #include "driver/estimate/obstacles.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
 #include <algorithm>
@@ -369,6 +370,7 @@ FlowEstimate flow_estimate(const Case& c) {
     if (!grains.held() && !starts_from_a_bed(c, grains))
       consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
   }
+  consider(flow, fastest_supply(c), FlowCause::moving_grains);
   for (const SolidCase& solid : c.solids) consider(flow, largest_speed(solid), FlowCause::moving_solids);
   return flow;
 }

@@ -15,6 +15,16 @@ double unit_rate(const Case& c) {
   return std::sqrt(weight * grain.diameter) * grain.diameter * c.domain.size.y();
 }
 
+double fastest_supply(const Case& c) {
+  double fastest = 0.0;
+  for (const beds::SupplyKeys& supply : c.supplies)
+    if (supply.velocity) fastest = std::max(fastest, supply.velocity->norm());
+  for (const beds::SinkKeys& sink : c.sinks)
+    if (sink.recirculation && sink.recirculation->velocity)
+      fastest = std::max(fastest, sink.recirculation->velocity->norm());
+  return fastest;
+}
+
 double grains_per_second(const Case& c, const beds::SupplyKeys& supply) {
   if (supply.rate) return *supply.rate;
   const beds::Population& population = c.grains[static_cast<std::size_t>(supply.population)];

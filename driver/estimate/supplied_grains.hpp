@@ -10,6 +10,9 @@ namespace thalweg::driver {
 // m^3/s, of a transport rate q* of 1 over the width of the box; 0 where q* has no meaning.
 double unit_rate(const Case& c);
 
+// m/s, of the fastest grains that supplies and recirculations bring in by a velocity of their own; 0: there are none.
+double fastest_supply(const Case& c);
+
 // Grains/s of a supply, in the mean.
 double grains_per_second(const Case& c, const beds::SupplyKeys& supply);
 

@@ -5,6 +5,7 @@
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 
 #include <fmt/format.h>
 
@@ -109,12 +110,7 @@ double prescribed_speed(const Case& c) {
   for (const beds::WallKeys& wall : c.walls)
     largest = std::max(largest, wall.velocity.norm() + oscillation_speed(wall.oscillation));
   for (const SolidCase& solid : c.solids) largest = std::max(largest, largest_speed(solid));
-  for (const beds::SupplyKeys& supply : c.supplies)
-    if (supply.velocity) largest = std::max(largest, supply.velocity->norm());
-  for (const beds::SinkKeys& sink : c.sinks)
-    if (sink.recirculation && sink.recirculation->velocity)
-      largest = std::max(largest, sink.recirculation->velocity->norm());
-  return largest;
+  return std::max(largest, fastest_supply(c));
 }
 
 // m/s, that a liquid bridge gives the smallest grain which it pulls to another or a wall: sqrt(2 W/m), with W the work

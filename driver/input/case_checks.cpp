@@ -183,6 +183,12 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
                              grains.prescribed_angular_velocity->norm() * radius);
     if (grains.motion) check_lattice_velocity(c, document, key + "motion", largest_speed(c, grains));
   }
+  for (std::size_t n = 0; n < c.supplies.size(); ++n)
+    if (const std::optional<Vec3>& velocity = c.supplies[n].velocity)
+      check_lattice_velocity(c, document, fmt::format("supplies.{}.velocity", n), velocity->norm());
+  for (std::size_t n = 0; n < c.sinks.size(); ++n)
+    if (const auto& back = c.sinks[n].recirculation; back && back->velocity)
+      check_lattice_velocity(c, document, fmt::format("sinks.{}.recirculation.velocity", n), back->velocity->norm());
 }
 
 void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {

@@ -131,6 +131,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"a_supply_of_no_population",
             {"supplies=[{population: 3, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.07]}}]"},
             {"supplies.0.population", "there is no such population"}},
+        Bad{"supply_too_fast_for_the_lattice",
+            {"supplies=[{population: 0, rate: 1, velocity: [5, 0, 0], region: {lower: [0, 0, 0.05], upper: [0.06, "
+             "0.01, 0.07]}}]"},
+            {"supplies.0.velocity", "5 m/s would be 0.2 cells per step, more than 0.173"}},
         Bad{"a_supply_outside_the_box",
             {"supplies=[{population: 0, rate: 1, region: {lower: [0, 0, 0.05], upper: [0.06, 0.01, 0.08]}}]"},
             {"supplies.0.region.upper", "the region must lie in the box"}},

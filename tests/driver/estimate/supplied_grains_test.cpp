@@ -1,5 +1,7 @@
 #include "driver/estimate/supplied_grains.hpp"
 
+#include "driver/estimate/contact_estimate.hpp"
+#include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/reference_grain.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
@@ -33,6 +35,19 @@ TEST(SuppliedGrains, HaveTheVolumeOfTheTransportRate) {
   supply.mass_rate = 1.0;
   EXPECT_NEAR(grains_per_second(c, supply) * fed.density * std::numbers::pi / 6.0 * std::pow(fed.diameter, 3), 1.0,
               1e-9);
+}
+
+// The fluid next to grains that come in fast is as fast as they are, and so are their impacts.
+TEST(SuppliedGrains, ComeInWithTheirOwnVelocity) {
+  Case c = water_over_glass(5e-3, 0.0, 0.04, 0.04, lbm::FaceType::periodic);
+  EXPECT_EQ(fastest_supply(c), 0.0);
+  c.supplies.emplace_back().velocity = Vec3(0.0, 3.0, -4.0);
+  EXPECT_EQ(fastest_supply(c), 5.0);
+  EXPECT_EQ(flow_estimate(c).speed, 5.0);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::moving_grains);
+  EXPECT_EQ(expected_overlaps(c).speed, 5.0);
+  c.sinks.emplace_back().recirculation.emplace().velocity = Vec3(6.0, 0.0, 0.0);
+  EXPECT_EQ(flow_estimate(c).speed, 6.0);
 }
 
 }  // namespace
