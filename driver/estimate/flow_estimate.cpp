@@ -8,10 +8,13 @@
 #include "driver/estimate/supplied_grains.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace thalweg::driver {
 
@@ -262,11 +265,17 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
   }
 }
 
-// The speed that grains of a population are given, m/s.
-double given_speed(const beds::Population& grains) {
-  if (grains.prescribed_velocity) return grains.prescribed_velocity->norm();
-  if (!grains.motion) return grains.fixed ? 0.0 : grains.velocity.norm();
-  return prescribed_motion(*grains.motion).largest_speed(0.0);  // without its rotation
+// m/s, the largest that a grain of a rigid population can have anywhere in its region or the box.
+double rigid_speed(const Case& c, const beds::Population& grains) {
+  const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
+  std::vector<Vec3> places = grains.placement.positions;
+  const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+  for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
+    places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
+                        (corner & 4 ? room.upper : room.lower)[2]);
+  double distance = 0.0;
+  for (const Vec3& place : places) distance = std::max(distance, motion.axis.cross(place - motion.centre).norm());
+  return motion.largest_speed(distance + 0.5 * grains.largest_diameter());
 }
 
 // m/s, of the largest grain of a population.
@@ -329,6 +338,14 @@ double settling_velocity(const Case& c) {
   return fastest;
 }
 
+double given_speed(const Case& c, const beds::Population& grains) {
+  if (grains.motion) return rigid_speed(c, grains);
+  if (grains.fixed) return 0.0;
+  const Vec3 velocity = grains.prescribed_velocity.value_or(grains.velocity),
+             spin = grains.prescribed_angular_velocity.value_or(grains.angular_velocity);
+  return std::max(velocity.norm(), 0.5 * grains.largest_extent() * spin.norm());
+}
+
 double estimated_velocity(const Case& c) {
   if (!has_fluid(c)) return 0.0;
   const Channel channel = channel_of(c);
@@ -366,7 +383,7 @@ FlowEstimate flow_estimate(const Case& c) {
   consider_faces(c, channel, flow);
   consider_start(c, flow);
   for (const beds::Population& grains : c.grains) {
-    consider(flow, given_speed(grains), FlowCause::moving_grains);
+    consider(flow, given_speed(c, grains), FlowCause::moving_grains);
     if (!grains.held() && !starts_from_a_bed(c, grains))
       consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
   }

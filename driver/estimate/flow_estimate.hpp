@@ -74,6 +74,10 @@ struct FlowEstimate {
 // All 0 without a fluid.
 FlowEstimate flow_estimate(const Case& c);
 
+// m/s, the largest that a case gives to the grains of a population, or to their surfaces by a spin: at the start, held,
+// or by a rigid motion anywhere in their region or the box.
+double given_speed(const Case& c, const beds::Population& grains);
+
 // The speed (m/s) that a flow driven by gravity along the bed can reach, whatever the time of the run. An upper
 // estimate, for warnings. 0 without a fluid or a slope.
 double estimated_velocity(const Case& c);

@@ -4,13 +4,13 @@
 #include "dem/motion/walls.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/case/solid_setup.hpp"
+#include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/grain_weight.hpp"
 #include "driver/input/grain_checks.hpp"
 #include "driver/input/run_context.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -131,19 +131,6 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                               (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
-// The largest speed (m/s) that a grain of a rigid population can have anywhere in its region or the box.
-double largest_speed(const Case& c, const beds::Population& grains) {
-  const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
-  std::vector<Vec3> places = grains.placement.positions;
-  const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
-  for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
-    places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
-                        (corner & 4 ? room.upper : room.lower)[2]);
-  double distance = 0.0;
-  for (const Vec3& place : places) distance = std::max(distance, motion.axis.cross(place - motion.centre).norm());
-  return motion.largest_speed(distance + 0.5 * grains.largest_diameter());
-}
-
 void check_fluid(const Case& c, const io::YamlDocument& document) {
   if (!has_fluid(c)) return;
   if (!(relaxation_time(c) > 0.5))
@@ -181,7 +168,7 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
     if (grains.prescribed_angular_velocity)
       check_lattice_velocity(c, document, key + "prescribed_angular_velocity",
                              grains.prescribed_angular_velocity->norm() * radius);
-    if (grains.motion) check_lattice_velocity(c, document, key + "motion", largest_speed(c, grains));
+    if (grains.motion) check_lattice_velocity(c, document, key + "motion", given_speed(c, grains));
   }
   for (std::size_t n = 0; n < c.supplies.size(); ++n)
     if (const std::optional<Vec3>& velocity = c.supplies[n].velocity)

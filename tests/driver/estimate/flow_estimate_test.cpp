@@ -199,6 +199,21 @@ TEST(FlowEstimate, KnowsInletsStartsAndGrainsThatFall) {
               1e-12);
 }
 
+// With the step that follows, the check of the lattice velocity accepts them.
+TEST(FlowEstimate, KnowsGrainsThatSpin) {
+  Case c = wide_bed(0.0);
+  beds::Population& grains = c.grains.front();
+  grains.angular_velocity = Vec3(0.0, 0.0, 2000.0);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::moving_grains);
+  EXPECT_NEAR(flow_estimate(c).speed, 2000.0 * 0.5 * d, 1e-12);
+  grains.angular_velocity = Vec3::Zero();
+  grains.count = 2;
+  grains.motion.emplace().rotation = dem::RotationKeys{.point = Vec3(0.02, 0.02, 0.02), .angular_velocity = 50.0};
+  grains.motion->rotation->axis = Vec3(0.0, 0.0, 1.0);
+  grains.placement.positions = {Vec3(0.03, 0.02, 0.01), Vec3(0.015, 0.02, 0.03)};
+  EXPECT_NEAR(flow_estimate(c).speed, 50.0 * (0.01 + 0.5 * d), 1e-12);
+}
+
 // What enters over the whole face flows above the bed, and so has the friction velocity of the log law of its mean.
 TEST(FlowEstimate, OfAnInletOverABedIsThatOfItsDischarge) {
   Case c = wide_bed(0.0);
