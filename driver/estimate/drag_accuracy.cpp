@@ -63,7 +63,10 @@ const char* nearest_in_water(const coupling::FluidKeys& fluid, double cells) {
   return cells < 13.0 ? "14 % too slowly at 10 cells and C_s = 0.1" : "9 % too slowly at 16 cells and C_s = 0.1";
 }
 
+// With one relaxation time from 56 % too large to 19 % too small in the same arrays, at ten cells.
 std::string slow_text(const Case& c, double cells) {
+  if (!lbm::traits_of(c.fluid.collision).is_trt_near_bodies)
+    return "with bgk off by an amount that depends on the relaxation time, tens of percent among others";
   const SlowDrag error = slow_drag_error(cells, c.coupling.links == bodies::LinkRule::cli);
   return fmt::format("off by {:+.2g} % alone and {:+.2g} % among others", 100.0 * error.alone,
                      100.0 * error.among_others);

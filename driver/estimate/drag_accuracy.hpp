@@ -7,9 +7,9 @@
 
 namespace thalweg::driver {
 
-// Relative error of the drag in slow flow without a subgrid model (benchmarks/validation/simple_cubic_arrays, worst of
-// the positions' means), linear in between, beyond the ends with the square of the resolution: alone (solid fraction
-// 0.027) and among others (0.216). Negative: too small.
+// Relative error of the drag in slow flow with trt and without a subgrid model, from the arrays of
+// benchmarks/validation/simple_cubic_arrays, worst of the positions' means; linear in between, beyond the ends with the
+// square of the resolution: alone (solid fraction 0.027) and among others (0.216). Negative: too small.
 struct SlowDrag {
   double alone, among_others;
 };
