@@ -119,13 +119,20 @@ bool holds_back(const coupling::FaceKeys& face) {
   return face.type == lbm::FaceType::no_slip || face.obeys_the_law_of_the_wall();
 }
 
-// m/s, u_max of a turbulent flow that this acceleration (m/s^2) drives along the bed.
-double turbulent_velocity(const Case& c, const Channel& channel, double along) {
+struct TurbulentFlow {
+  double largest, mean;  // m/s, u_max and U
+};
+
+// The flow that this acceleration (m/s^2) drives along the bed. The mean of a log law is its own friction velocity over
+// kappa below its largest value.
+TurbulentFlow turbulent_flow(const Case& c, const Channel& channel, double along) {
+  const double of_walls = std::sqrt(along * channel.radius), of_bed = std::sqrt(along * channel.distance());
   const double between = holds_back(c.domain.faces[y_low]) && holds_back(c.domain.faces[y_high])
-                             ? velocity_between_side_walls(std::sqrt(along * channel.radius), channel)
+                             ? velocity_between_side_walls(of_walls, channel)
                              : infinite;
-  const double over_bed = std::sqrt(along * channel.distance());
-  return std::min(over_bed / karman_constant * log_of(channel.distance(), over_bed, channel), between);
+  const double over_bed = of_bed / karman_constant * log_of(channel.distance(), of_bed, channel);
+  const double largest = std::min(over_bed, between), friction_velocity = between < over_bed ? of_walls : of_bed;
+  return {largest, std::max(0.5 * largest, largest - friction_velocity / karman_constant)};
 }
 
 // m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, an inlet sets how
@@ -155,9 +162,8 @@ SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
   const double friction_velocity = std::sqrt(along * channel.radius);
   if (slow.mean * channel.radius / channel.viscosity < channel_transition)
     return {slow.largest, slow.mean, friction_velocity, true, slow.spin_up};
-  const double speed = turbulent_velocity(c, channel, along);
-  const double bulk = std::max(0.5 * speed, speed - friction_velocity / karman_constant);
-  return {speed, bulk, friction_velocity, false, 2.0 * bulk / along};
+  const TurbulentFlow fast = turbulent_flow(c, channel, along);
+  return {fast.largest, fast.mean, friction_velocity, false, 2.0 * fast.mean / along};
 }
 
 FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {

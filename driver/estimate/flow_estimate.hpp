@@ -6,7 +6,8 @@
 // below U R/nu = 500, that is 2000 with the hydraulic diameter 4 R.
 //
 //   slope           laminar: u_max and U of the channel of h and the width (laminar_channel.hpp)
-//                   turbulent: u_max = (u_tau/kappa) ln(h/z_0), between two side walls at most that of their law;
+//                   turbulent: u_max = (u_b/kappa) ln(h/z_0) with u_b^2 = g_x h, U = u_max - u_b/kappa; between two
+//                   side walls at most that of their law, with u_tau for u_b;
 //                   at most the start + g_x times the time of the run; u_tau^2 = g_x R
 //   mean velocity   the water above the bed carries it all: U = mean velocity times water/(A H);
 //                   laminar: u_tau and u_max of the same channel

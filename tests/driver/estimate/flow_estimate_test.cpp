@@ -49,6 +49,20 @@ TEST(FlowEstimate, OfASlopeIsTheLogLaw) {
   EXPECT_NEAR(flow.spin_up, 2.0 * flow.bulk_velocity / along, 1e-12);
 }
 
+// Side walls take a share of the force, and make no flow faster.
+TEST(FlowEstimate, OfASlopeIsNotFasterBetweenSideWalls) {
+  const FlowEstimate wide = flow_estimate(wide_bed());
+  for (const lbm::FaceType side : {lbm::FaceType::no_slip, lbm::FaceType::law_of_the_wall}) {
+    Case c = wide_bed();
+    c.domain.faces[y_low].type = c.domain.faces[y_high].type = side;
+    const FlowEstimate flow = flow_estimate(c);
+    EXPECT_LT(flow.friction_velocity, wide.friction_velocity);
+    EXPECT_LE(flow.speed, wide.speed);
+    EXPECT_LE(flow.bulk_velocity, wide.bulk_velocity * (1.0 + 1e-12));
+    EXPECT_LE(flow.spin_up, wide.spin_up * (1.0 + 1e-12));
+  }
+}
+
 // g_x t, and as much more than the start; the friction velocity stays that of the developed flow.
 TEST(FlowEstimate, OfASlopeIsNoMoreThanTheRunHasTimeFor) {
   Case c = wide_bed();
