@@ -17,6 +17,7 @@ struct Loads {
   std::vector<Vec3> force, torque;  // N, N m, of owned grains
   std::vector<Mat3> stress;         // Pa
   std::vector<double> walls;        // N, from the diagnostics
+  double density = 0.0;             // mean deviation
 };
 
 // Seven grains held fast: they touch each other, overlap a little, touch the floor and a side, or stand alone.
@@ -48,6 +49,7 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
   }
   for (const Diagnostic& diagnostic : system->diagnostics())
     if (diagnostic.name.starts_with("fluid_wall_force")) loads.walls.push_back(diagnostic.value);
+  loads.density = find_diagnostic(system->diagnostics(), "mean_density_deviation").value();
   return loads;
 }
 
@@ -57,6 +59,7 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
 // the radius, in the stress over a third of it.
 void expect_no_difference(const WaterBox& box) {
   const Loads before = loads_in(box, at_rest), after = loads_in(box, compressed);
+  EXPECT_NEAR(after.density - before.density, 0.01, 1e-3);  // it is there, and nothing has taken it away
   const Units units{box.spacing, box.time_step, 1000.0};
   const double round_off = 2.0 * 80.0 / 3.0 * 0x1p-37 * units.force();
   for (std::size_t g = 0; g < before.force.size(); ++g) {
