@@ -90,7 +90,7 @@ TEST(GrainStress, IsNotTakenUpOrDroppedByARestart) {
 // Fluid Mech. 41, 545: the symmetric first moment of the traction is the stresslet (20/3) pi eta R^3 E, so that the
 // symmetric part of the stress is 5 eta E; with E_xz = g/2 that is 5/2 eta g. It is the same whether the sphere turns
 // or not. In a box of a few diameters the images add a share of the order of the solid fraction (here 2.5 x 0.8 %), and
-// at nine cells a diameter interpolated links are 1 to 3 % off: bound 5 %. The other symmetric parts without trace
+// at nine cells a diameter interpolated links are 1 to 3 % off: bound 4 %. The other symmetric parts without trace
 // vanish by symmetry, to the same share. The sphere does not turn, so the torque is 8 pi eta R^3 g/2 (Stokes), that is
 // sigma_xz - sigma_zx = 3 eta g, to the same accuracy.
 TEST(GrainStress, InSlowShearIsTheStresslet) {
