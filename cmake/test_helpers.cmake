@@ -41,6 +41,7 @@ function(thalweg_test)
              COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:${program}> --gtest_filter=${filter})
     thalweg_mpi_test_properties(${T_NAME}.${ranks} ${ranks})
     set_property(TEST ${T_NAME}.${ranks} PROPERTY LABELS ${labels})
+    set_property(TEST ${T_NAME}.${ranks} APPEND PROPERTY ENVIRONMENT THALWEG_TEST_RANKS=${ranks})  # main() compares
   endforeach()
 endfunction()
 

@@ -1,9 +1,14 @@
-// main() of every test executable: GoogleTest under MPI. Only rank 0 reports passes; a failure on any rank fails all.
+// main() of every test executable: GoogleTest under MPI. Only rank 0 reports passes; a failure on any rank fails all. A
+// run without a test fails, and so does one on another number of ranks than THALWEG_TEST_RANKS, if that is set: with
+// the mpiexec of another MPI every process is a world of its own, in which all that is said of ranks holds.
 #include "core/parallel/mpi_session.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <string>
 
 #ifdef THALWEG_FINDS_LEAKS
 #include <sanitizer/lsan_interface.h>
@@ -26,6 +31,17 @@ void look_for_leaks() {
 #endif
 }
 
+// Whether tests ran, and on the ranks that CMake has asked for; says so if not.
+bool ran_as_asked() {
+  const int ranks = thalweg::size_of(MPI_COMM_WORLD), tests = ::testing::UnitTest::GetInstance()->test_to_run_count();
+  const char* asked = std::getenv("THALWEG_TEST_RANKS");
+  const bool as_asked = !asked || std::to_string(ranks) == asked;
+  if (!as_asked)
+    std::fprintf(stderr, "The tests are for %s ranks, and run on %d: is mpiexec of this MPI?\n", asked, ranks);
+  if (tests == 0) std::fprintf(stderr, "The filter selects no test.\n");
+  return as_asked && tests > 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,7 +59,7 @@ int main(int argc, char** argv) {
     };
     listeners.Append(new FailuresOnly);
   }
-  const bool failed = RUN_ALL_TESTS() != 0;
+  const bool failed = RUN_ALL_TESTS() != 0 || !ran_as_asked();
   const bool any_failed = thalweg::any_rank(MPI_COMM_WORLD, failed);
   look_for_leaks();
   return any_failed ? 1 : 0;
