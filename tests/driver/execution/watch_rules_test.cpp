@@ -104,11 +104,14 @@ TEST(WatchRules, GrainsMayBeAsFastAsTheCaseMovesThem) {
   EXPECT_LT(expected_grain_speed(moist), 10.0 * std::sqrt(work / mass));
 
   still.initial.from.grains = "elsewhere";
+  int watched = 0;
   for (const WatchRule& rule : watch_rules(still))
     if (rule.diagnostic == "largest_grain_speed") {
       EXPECT_GT(rule.limits({{"largest_grain_speed", "m/s", 0.1}}).warn, 0.1);
       EXPECT_LT(rule.limits({{"largest_grain_speed", "m/s", 0.8}}).stop, 0.8);
+      ++watched;
     }
+  EXPECT_EQ(watched, 1);
 }
 
 // Grains that a dense placement leaves in touch part by rounding, and such a run goes on.
