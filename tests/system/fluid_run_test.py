@@ -141,6 +141,21 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         numpy.testing.assert_allclose(one["eddy_viscosity"], (0.27 * 0.5e-3) ** 2 * one["shear_rate"], rtol=1e-6)
         # rho = rho_0 + p/c_s^2 with c_s^2 = (dx/dt)^2/3, to the last places of a density in single precision.
         numpy.testing.assert_allclose(one["density"], 1000 + one["pressure"] * 3 / 10.0 ** 2, rtol=1e-6)
+        # Central differences of the picture's velocities (x y z along the last axis, of which x is the third), in the
+        # cells that have neighbours on all sides. Both are rounded in single precision of the lattice velocity unit,
+        # 10 m/s, over a spacing.
+        velocity = whole["velocity"].astype(float)
+        inside = (slice(1, -1),) * 3
+        gradient = numpy.stack(numpy.gradient(velocity, 0.5e-3, axis=(2, 1, 0)), axis=-1)[inside]   # du_a/dx_b
+        spin = numpy.stack([gradient[..., (a + 2) % 3, (a + 1) % 3] - gradient[..., (a + 1) % 3, (a + 2) % 3]
+                            for a in range(3)], axis=-1)
+        rounding = 10.0 * 2.0 ** -22 / 0.5e-3
+        self.assertGreater(abs(spin).max(), 100 * rounding)
+        numpy.testing.assert_allclose(whole["vorticity"][inside], spin, atol=rounding)
+        # Q = (W:W - S:S)/2 is -tr(G G)/2 of a gradient G whatever its trace.
+        q = -0.5 * numpy.einsum("...ab,...ba", gradient, gradient)
+        numpy.testing.assert_allclose(whole["q_criterion"][inside], q, atol=9 * abs(gradient).max() * rounding)
+        self.assertGreater(abs(q).max(), 100 * abs(gradient).max() * rounding)
 
     def test_means_have_the_same_bits_on_any_ranks_and_after_a_restart(self):
         means = ("--set", "analysis.fluid_statistics={from: 0.002, every: 0.001}")
