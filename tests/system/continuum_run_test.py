@@ -69,6 +69,11 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
         q_s = numpy.sum(column["solid_fraction"] * column["grain_velocity"][:, 0] * column["thickness"])
         self.assertAlmostEqual(q_s / figures["q_s"], 1.0, delta=1e-12)
         self.assertEqual(run.series["q_star"][-1], figures["q_star"])
+        self.assertAlmostEqual(figures["q_star"] * (1.55 * 9.8 * 5e-3 ** 3) ** 0.5 / q_s, 1.0, delta=1e-12)
+        # The weight of the water above the surface along the bed, and the Shields number of that.
+        stress = 9800 * numpy.sin(numpy.arctan(0.016)) * (column["thickness"].sum() - figures["surface_height"])
+        self.assertAlmostEqual(figures["bed_stress"] / stress, 1.0, delta=1e-12)
+        self.assertAlmostEqual(figures["shields_number"] * 1550 * 9.8 * 5e-3 / stress, 1.0, delta=1e-12)
         # Of fig. 11 at this Shields number, to 2 %.
         self.assertAlmostEqual(figures["creep_decade_length"] / 5e-3, 2.22, delta=0.02 * 2.22)
 

@@ -114,7 +114,12 @@ analysis:
             transport["reference_density"], (2550 * large + 2000 * small) / (large + small), delta=1e-9
         )
         self.assertEqual(transport["measurements"], 71)   # every millisecond from 10 to 80
-        self.assertGreaterEqual(transport["hops"], 0)
+        # q* = q_s/sqrt((s - 1) g d^3), g the magnitude of gravity on any slope.
+        unit = ((transport["reference_density"] / 1000 - 1) * 9.8 * 4.95e-3 ** 3) ** 0.5
+        self.assertGreater(abs(series["q_star"]).min(), 0.0)
+        numpy.testing.assert_allclose(series["q_star"] * unit, series["q_s"], rtol=1e-12)
+        for name in ("mean", "error", "deviation"):
+            self.assertAlmostEqual(transport[f"q_star_{name}"] * unit / transport[f"q_s_{name}"], 1.0, 12)
         # Classes of the two sizes, which add up to all.
         sizes = Run(self.folder / "run").fractional_transport
         numpy.testing.assert_allclose(sizes["diameter"], [4.2e-3, 4.95e-3], rtol=1e-12)
