@@ -95,6 +95,16 @@ analysis:
             grains = 70 * numpy.pi / 6 * 4.95e-3 ** 3 / (0.0396 * 0.010725)
             self.assertAlmostEqual(numpy.dot(group["solid_fraction"][()], group["thickness"][()]), grains,
                                    delta=1e-4 * grains)
+            # Eq. 25 of Zhang et al. (2022): F over the drag of Stokes, and the Reynolds number of the slip.
+            phi = group["solid_fraction"][()]
+            slip = group["fluid_velocity"][()] - group["grain_velocity"][()]
+            among = phi > 0.01
+            self.assertGreater(among.sum(), 20)
+            phi, slip, drag = phi[among], slip[among], group["drag_density"][()][among]
+            stokes = 18 * phi * (1 - phi) * 1e-3 * slip[:, 0] / 4.95e-3 ** 2
+            numpy.testing.assert_allclose(group["drag_function"][()][among] * stokes, drag[:, 0], rtol=1e-9)
+            numpy.testing.assert_allclose(group["drag_reynolds_number"][()][among],
+                                          (1 - phi) * numpy.linalg.norm(slip, axis=1) * 4.95e-3 / 1e-6, rtol=1e-9)
 
     def test_a_stress_balance_that_cannot_be_is_refused(self):
         balance = ("--set", "analysis.stress_balance={from: 0}")
