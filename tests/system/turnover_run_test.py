@@ -150,6 +150,40 @@ class TurnoverRun(ProgramTest):
                       sorted((self.folder / "one/checkpoints").glob("step_*.h5"))[0])
         self.assertEqual(self.checkpoints("again")[-1], reference[-1])
 
+    def test_grains_come_in_with_the_velocity_of_the_fluid_there(self):
+        # A shear of 20/s, in which grains of the density of the fluid appear every 2 ms at random heights.
+        (self.folder / "shear.yaml").write_text("""
+system: resolved
+name: shear
+domain:
+  size: [0.040, 0.020, 0.020]
+  spacing: 1.25e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.4, 0, 0]}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 2.0e-4}
+initial: {fluid: {linear_profile: {upper: 0.020, velocity: [0.4, 0, 0]}}}
+gravity: {magnitude: 9.81}
+grains:
+  - {diameter: 5.0e-3, density: 1050, velocity: [0.06, 0, 0], placement: {positions: [[0.02, 0.01, 0.003]]}}
+contact: {restitution: 0.5, friction: 0.5}
+coupling: {fewest_cells_per_diameter: 4}
+supplies:
+  - {population: 0, rate: 500, region: {lower: [0.003, 0.003, 0.004], upper: [0.037, 0.017, 0.016]}}
+run: {until: 0.01}
+output: {grains: {every: 2.0e-4}}
+""")
+        for ranks in (0, 4):
+            self.run_well("run", "shear.yaml", "--out", f"on_{ranks}", ranks=ranks)
+            known, heights = {0}, []
+            for frame in thalweg.Run(self.folder / f"on_{ranks}").grains:
+                for n in numpy.flatnonzero(~numpy.isin(frame.arrays["id"], list(known))):
+                    known.add(frame.arrays["id"][n])
+                    heights.append(frame.position[n, 2])
+                    # The velocity is that in the middle of the cell, off by half a cell of shear at most; the step until
+                    # the frame brings the grain nearer to that of the fluid around it, by no more than this again.
+                    numpy.testing.assert_allclose(frame.velocity[n], [20 * heights[-1], 0, 0], atol=20 * 1.25e-3)
+            self.assertEqual(len(heights), 4)
+            self.assertGreater(numpy.ptp(heights), 5e-3)   # 0.1 m/s from one another
+
     def test_a_stream_that_recirculates_its_grains(self):
         case = self.folder / "stream.yaml"
         case.write_text(STREAM)
