@@ -61,6 +61,27 @@ analysis:
 """
 
 
+SHEAR = """
+system: resolved
+name: shear
+domain:
+  size: [0.040, 0.020, 0.020]
+  spacing: 1.25e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.4, 0, 0]}}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 2.0e-4}
+initial: {fluid: {linear_profile: {upper: 0.020, velocity: [0.4, 0, 0]}}}
+gravity: {magnitude: 9.81}
+grains:
+  - {diameter: 5.0e-3, density: 1050, velocity: [0.06, 0, 0], placement: {positions: [[0.02, 0.01, 0.003]]}}
+contact: {restitution: 0.5, friction: 0.5}
+coupling: {fewest_cells_per_diameter: 4}
+supplies:
+  - {population: 0, rate: 500, region: {lower: [0.003, 0.003, 0.004], upper: [0.037, 0.017, 0.016]}}
+run: {until: 0.01}
+output: {grains: {every: 2.0e-4}}
+"""
+
+
 class TurnoverRun(ProgramTest):
     CASE = DRY
 
@@ -151,26 +172,8 @@ class TurnoverRun(ProgramTest):
         self.assertEqual(self.checkpoints("again")[-1], reference[-1])
 
     def test_grains_come_in_with_the_velocity_of_the_fluid_there(self):
-        # A shear of 20/s, in which grains of the density of the fluid appear every 2 ms at random heights.
-        (self.folder / "shear.yaml").write_text("""
-system: resolved
-name: shear
-domain:
-  size: [0.040, 0.020, 0.020]
-  spacing: 1.25e-3
-  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: {type: moving, velocity: [0.4, 0, 0]}}
-fluid: {density: 1000, kinematic_viscosity: 1.0e-5, time_step: 2.0e-4}
-initial: {fluid: {linear_profile: {upper: 0.020, velocity: [0.4, 0, 0]}}}
-gravity: {magnitude: 9.81}
-grains:
-  - {diameter: 5.0e-3, density: 1050, velocity: [0.06, 0, 0], placement: {positions: [[0.02, 0.01, 0.003]]}}
-contact: {restitution: 0.5, friction: 0.5}
-coupling: {fewest_cells_per_diameter: 4}
-supplies:
-  - {population: 0, rate: 500, region: {lower: [0.003, 0.003, 0.004], upper: [0.037, 0.017, 0.016]}}
-run: {until: 0.01}
-output: {grains: {every: 2.0e-4}}
-""")
+        # A shear of 20/s, in which grains nearly as light as the fluid appear every 2 ms at random heights.
+        (self.folder / "shear.yaml").write_text(SHEAR)
         for ranks in (0, 4):
             self.run_well("run", "shear.yaml", "--out", f"on_{ranks}", ranks=ranks)
             known, heights = {0}, []
@@ -183,6 +186,27 @@ output: {grains: {every: 2.0e-4}}
                     numpy.testing.assert_allclose(frame.velocity[n], [20 * heights[-1], 0, 0], atol=20 * 1.25e-3)
             self.assertEqual(len(heights), 4)
             self.assertGreater(numpy.ptp(heights), 5e-3)   # 0.1 m/s from one another
+
+    def test_a_transport_rate_is_a_volume_of_the_grains_that_come_in(self):
+        # A small and a large sphere in turn; q* is scaled with the large one, which has more than half of the volume.
+        (self.folder / "shear.yaml").write_text(SHEAR)
+        q_star, until, sizes = 6.0, 0.03, (4.0e-3, 5.0e-3)
+        settings = ["--set", f"run.until={until}", "--set", "supplies.0.rate=null", "--set",
+                    f"supplies.0.transport_rate={q_star}", "--set", "output.series.every=0.01", "--set",
+                    "grains=[{count: 2, diameter: {sizes: [4.0e-3, 5.0e-3], fractions: [0.5, 0.5]}, density: 1050, "
+                    "velocity: [0.06, 0, 0], placement: {pattern: random, region: {lower: [0, 0, 0], "
+                    "upper: [0.04, 0.02, 0.006]}}}]"]
+        self.run_well("run", "shear.yaml", "--out", "run", *settings)
+        unit = (0.05 * 9.81 * sizes[1] ** 3) ** 0.5   # m^2/s
+        small, large = (numpy.pi / 6 * d ** 3 for d in sizes)
+        due = q_star * unit * 0.020 * until   # m^3, over the width of the box
+        known = self.series("run")
+        self.assertLess(known["supply_lag"].max(), 2.0e-4)   # each comes in with the step after it is due
+        mean = 0.5 * (small + large)
+        self.assertGreater(due / mean, 10)
+        # The next grain is due within a mean volume and what is due in a step; of an odd number one has no partner.
+        self.assertAlmostEqual(known["supplied_mass"][-1] / 1050, due,
+                               delta=mean + due * 2.0e-4 / until + 0.5 * (large - small))
 
     def test_a_stream_that_recirculates_its_grains(self):
         case = self.folder / "stream.yaml"
