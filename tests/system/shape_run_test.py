@@ -88,6 +88,16 @@ output: {checkpoint: {every: 0.01}}
         for other in ("again", "parts"):
             self.assert_same_end("run", other)
 
+    def test_check_says_how_wide_a_sieve_lets_clumps_of_a_size_through(self):
+        """Of ellipsoids with half axes a >= b >= c: b over (a b c)^(1/3)."""
+        shutil.copy(ROOT / "cases/shapes/oblate.stl", self.folder)
+        for name, axes in (("prolate", (2.0, 1.0, 1.0)), ("oblate", (2.0, 2.0, 1.0)), ("triaxial", (1.5, 1.0, 0.65))):
+            said = self.run_well("check", self.case, "--set", f"grains.0.shape={{stl: {name}.stl, spheres: 6}}", "--set",
+                                 "grains.0.diameter=3.0e-3").stdout
+            (found,) = re.findall(r"intermediate axis ([0-9.]+) of the size", said)
+            # Printed with three digits, and the surfaces have flat facets.
+            self.assertAlmostEqual(float(found), axes[1] / numpy.prod(axes) ** (1.0 / 3.0), delta=6e-3, msg=name)
+
     def test_size_classes_and_supplies_take_clumps_by_their_size(self):
         """Eight clumps of 3 and 4 mm and those that come in: a class has the share of its number times d^3."""
         mixed = ("--set", "grains.0.shape={stl: triaxial.stl, spheres: 4}", "--set",
