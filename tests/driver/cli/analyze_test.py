@@ -7,11 +7,13 @@ import json
 import sys
 from pathlib import Path
 
+import numpy
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 import program
 import thalweg
 from program import TUMBLING_GRAINS, ProgramTest
-from thalweg import transport
+from thalweg import layers, transport
 
 
 class Analyze(ProgramTest):
@@ -73,6 +75,24 @@ class Analyze(ProgramTest):
         self.assertLess(self.assert_one_mean("early")["measurements"], 53)
         self.run_well("run", self.case, "--out", "often", "--set", "analysis.transport_rate.every=2e-4")
         self.assertEqual(self.assert_one_mean("often")["measurements"], 251)
+
+    def test_the_run_and_its_reader_agree_on_layers_of_grains(self):
+        # The same sums of the same three moments, in C++ as they go and in Python from frames, of two kinds of grains.
+        self.run_well("run", self.case, "--out", "run", "--set", "analysis.grain_profiles={from: 0.05, every: 0.02}",
+                      "--set", "grains=[{count: 40, diameter: 5.0e-3, density: 2550, placement: {pattern: random}}, "
+                      "{count: 20, diameter: 4.0e-3, density: 1500, placement: {pattern: random}}]")
+        run = thalweg.Run(self.folder / "run")
+        self.assertEqual(len(list(run.grains.between(0.05))), 3)
+        of_run = run.profiles["grain_profiles"]
+        of_reader = layers.layer_profiles(run, 0.05, thickness=2 * of_run["z"][0])
+        numpy.testing.assert_allclose(of_reader["z"], of_run["z"], rtol=1e-12)
+        there = of_reader["solid_fraction"] > 0
+        self.assertGreater(there.sum(), 4)
+        # Sums of up to 60 grains with both signs, each rounded at 1e-16 of its part: 1e-11 of the largest value.
+        for name in ("solid_fraction", "velocity", "flux", "granular_temperature", "contact_stress"):
+            found, expected = of_run[name][there], numpy.reshape(of_reader[name], of_run[name].shape)[there]
+            self.assertGreater(abs(expected).max(), 0.0, name)
+            numpy.testing.assert_allclose(found, expected, atol=1e-11 * abs(expected).max(), err_msg=name)
 
 
 if __name__ == "__main__":
