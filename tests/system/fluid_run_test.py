@@ -173,6 +173,24 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
                                    group["velocity"][:, 0].mean(), delta=1e-11)
         self.assertEqual(self.summary("again")["fluid_statistics"]["measurements"], 19)
 
+    def test_means_are_those_of_the_pictures(self):
+        # Six moments, of which the pictures show every cell and every digit.
+        self.run_well("run", self.case, "--out", "run", "--until", "1e-3", "--set", "fluid.precision=double", "--set",
+                      "analysis.fluid_statistics={every: 2e-4}", "--set",
+                      "output.fluid={every: 2e-4, region: whole, precision: double, fields: [velocity]}")
+        u = numpy.stack([frame.arrays["velocity"] for frame in Run(self.folder / "run").fluid])   # [time, z, y, x, axis]
+        self.assertEqual(u.shape, (6, 26, 21, 40, 3))
+        means = Run(self.folder / "run").profiles["fluid_statistics"]
+        # Every velocity counts to 2^-40 of the lattice velocity unit, 10 m/s; nothing is faster than 0.6 m/s.
+        step = 10.0 * 2.0 ** -40
+        for name, over in (("", (0, 2, 3)), ("section_", (0, 3))):
+            mean = u.mean(axis=over)
+            numpy.testing.assert_allclose(means[f"{name}velocity"], mean, atol=step)
+            stress = numpy.stack([(u[..., a] * u[..., b]).mean(axis=over) - mean[..., a] * mean[..., b]
+                                  for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=-1)
+            self.assertGreater(abs(stress).max(axis=tuple(range(stress.ndim - 1))).min(), 1e-6)
+            numpy.testing.assert_allclose(means[f"{name}reynolds_stress"], stress, atol=4 * 0.6 * step)
+
     def test_the_start_is_a_log_profile_with_eddies_on_top(self):
         calm = "initial.fluid={log_profile: {bed_height: 0.0, shear_velocity: 0.03, roughness: 1.0e-5}}"
         pictures = ("--until", "1e-4", "--set", "output.fluid={every: 1e-4, fields: [velocity, pressure]}", "--set",
