@@ -14,6 +14,7 @@ from vtk import vtkXMLImageDataReader, vtkXMLPolyDataReader
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import program
 from program import ProgramTest
+from thalweg import Run
 
 
 class ResolvedRun(ProgramTest):
@@ -185,6 +186,46 @@ analysis:
         bgk = self.run_well("check", self.case, "--set", "fluid.collision=bgk").stdout
         self.assertIn("With bgk, water seeps through a dense bed at about 0.005 times the right speed", bgk)
         self.assertNotIn("seeps", self.run_well("check", self.case).stdout)
+
+
+class AtRest(ProgramTest):
+    """Oil at rest under its own weight, around a sphere that is held: pressures and forces in Pa and N."""
+    CASE = """
+system: resolved
+name: at rest
+domain:
+  size: [0.010, 0.010, 0.020]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}
+fluid: {density: 1200, kinematic_viscosity: 1.0e-5, collision: trt, subgrid_model: none, time_step: 5.0e-5,
+        precision: double}
+gravity: {magnitude: 9.8, mode: full}
+coupling: {links: cli}
+grains: [{diameter: 5.0e-3, density: 2500, fixed: true, placement: {positions: [[0.005, 0.005, 0.0081]]}}]
+contact: {restitution: 0.5}
+run: {until: 0.005}
+output: {series: {every: 0.005}, fluid: {every: 0.005, fields: [velocity, pressure, grain_id], precision: double}}
+analysis: {wall_forces: {}, population_loads: {}}
+"""
+
+    def test_pressure_and_buoyancy_are_those_of_its_weight(self):
+        self.run_well("run", self.case)
+        last = Run(self.folder / "run").fluid[-1]
+        free = last.arrays["grain_id"] < 0
+        # With the links of cli the fluid stays at rest exactly (full_gravity_test.cpp): what is left is round-off, of a
+        # velocity unit of 10 m/s and a pressure of rho c_s^2 = 40 kPa. The pressure is nought in the middle.
+        self.assertLess(abs(last.arrays["velocity"]).max(), 1e-12)
+        weight = 1200 * 9.8 * (0.010 - last.centres("z"))[:, None, None] + 0 * last.arrays["pressure"]
+        numpy.testing.assert_allclose(last.arrays["pressure"][free], weight[free], atol=1e-8)
+        # Floor and lid have half of the weight of the full box each, the grain that of the cells it covers, which the
+        # fluid lacks: of the same volume as the sphere but for what lies between cell centres, to 2 % here.
+        series, plan = self.series(), 0.010 ** 2
+        for face in ("bottom", "top"):
+            force = series[f"fluid_wall_force_{face}_z"][-1]
+            self.assertAlmostEqual(force / (1200 * 9.8 * 0.010 * plan), -1, delta=1e-6)
+        lift = series["grains_0_fluid_force_z"][-1]
+        self.assertAlmostEqual(lift / (1200 * 9.8 * (~free).sum() * 0.5e-3 ** 3), 1, delta=1e-6)
+        self.assertAlmostEqual(lift / (1200 * 9.8 * numpy.pi / 6 * 5e-3 ** 3), 1, delta=0.02)
 
 
 if __name__ == "__main__":
