@@ -77,6 +77,68 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
         # Of fig. 11 at this Shields number, to 2 %.
         self.assertAlmostEqual(figures["creep_decade_length"] / 5e-3, 2.22, delta=0.02 * 2.22)
 
+    def column_with(self, *settings):
+        self.run_well("run", self.case, "--overwrite", "--until", "5", *[w for s in settings for w in ("--set", s)])
+        return thalweg.Run(self.folder / "run").profiles["continuum"]
+
+    def test_the_drag_is_that_of_the_law_chosen(self):
+        # Eqs. 25 to 28 of Zhang et al. (2022) by hand, of the state after 5 s. Solid fractions are kept positive by
+        # 1e-5 in a root with them, which changes those above a hundredth by less than 1e-6. Streamwise speeds are in a
+        # root with 0.01 m/s (docs/theory.md, section 4c).
+        def beetstra(phi, reynolds, crowd):
+            n = 1 - phi
+            return 10 * phi / n ** 2 + n ** 2 * (1 + 1.5 * phi ** 0.5) + 0.413 * reynolds / (24 * n ** 2) * (
+                1 / n + 3 * phi * n + 8.4 * reynolds ** -0.343) / (1 + crowd * reynolds ** (-0.5 * (1 + 4 * phi)))
+
+        def schiller(phi, reynolds):
+            return numpy.where(reynolds <= 1000, 1 + 0.15 * reynolds ** 0.687, 0.44 / 24 * reynolds) / (1 - phi) ** 3
+
+        for settings, law in (
+            ((), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi)) / (1 - phi)),
+            (("drag=beetstra",), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi))),
+            (("drag=schiller",), schiller),
+            (("drag_crowding=printed",), lambda phi, re: beetstra(phi, re, 1000 * phi) / (1 - phi)),
+            (("drag_speed=streamwise", "drag=beetstra"), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi))),
+        ):
+            with self.subTest(settings=settings):
+                column = self.column_with(*(f"closures.{setting}" for setting in settings))
+                grains = column["solid_fraction"] > 1e-2
+                phi, drift = column["solid_fraction"][grains], column["drift_velocity"][grains]
+                along = (column["fluid_velocity"] - column["grain_velocity"])[grains, 0]
+                self.assertGreater(abs(drift).max(), 0.01 * abs(along).max())   # or the two speeds are one
+                speed = numpy.hypot(along, 0.01 if "drag_speed=streamwise" in settings else drift)
+                reynolds = (1 - phi) * speed * 5e-3 / 1e-6
+                numpy.testing.assert_allclose(column["drag_reynolds_number"][grains], reynolds, rtol=1e-6)
+                numpy.testing.assert_allclose(column["drag_function"][grains], law(phi, reynolds), rtol=1e-6)
+                drag = 18 * phi * (1 - phi) * 1e-3 * law(phi, reynolds) * along / 5e-3 ** 2
+                numpy.testing.assert_allclose(column["drag_density"][grains, 0], drag, rtol=1e-6)
+
+    def test_the_creep_is_a_solution_of_its_equation(self):
+        # Eq. 29 as docs/theory.md has it, by central differences on the points of the profile, which the program uses,
+        # too: to the rounding of a second difference.
+        for settings, amplitude, rate, mu_1, mu_2, ends, surface in (
+            ((), 0.43, 0.33 / 5, 0.37, 0.7, (2, 10), 0.01),
+            (("creep={nonlocal_amplitude: 0.6, rate_coefficient: 0.2, upper: 4, lower: 20, surface_fluidity: 30}",
+              "closures.rheology={static_friction: 0.4, limit_friction: 0.8}"), 0.6, 0.2, 0.4, 0.8, (4, 20), 30),
+        ):
+            with self.subTest(settings=settings):
+                column = self.column_with(*settings)
+                depth, g, mu = (column[f"creep_{name}"] for name in ("depth", "fluidity", "stress_ratio"))
+                numpy.testing.assert_allclose((depth.min() / 5e-3, depth.max() / 5e-3), ends, rtol=1e-9)
+                self.assertAlmostEqual(g[numpy.argmin(depth)] / surface, 1.0, 9)
+                self.assertEqual(g[numpy.argmax(depth)], 0.0)
+                h, down = depth[1] - depth[0], numpy.cos(numpy.arctan(0.016)) * 9.8
+                pressure = 0.62 * 1550 * down * depth
+                local = (mu_2 - mu_1) * (mu_1 - mu) / (mu_2 - mu) * g
+                local += rate * (2550 / pressure) ** 0.5 * 5e-3 * mu * g ** 2
+                curved = (amplitude * 5e-3) ** 2 * (g[2:] - 2 * g[1:-1] + g[:-2]) / h ** 2
+                numpy.testing.assert_allclose(curved, local[1:-1], atol=1e-6 * abs(local).max())
+                # dU/dz = g mu, by trapezoids from nothing below.
+                rate_of_shear = g * mu
+                steps = numpy.diff(column["creep_velocity"]) / -h
+                numpy.testing.assert_allclose(steps, 0.5 * (rate_of_shear[1:] + rate_of_shear[:-1]), rtol=1e-6,
+                                              atol=1e-9 * rate_of_shear.max())
+
     def test_refusals(self):
         for setting, words in (
                 ("gravity.slope=0", ["gravity", "a slope above 0"]),
