@@ -5,6 +5,7 @@ or goes on, refusals.
 Called by ctest: model_fluid_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -202,6 +203,24 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.assertIn("Shields number 0.5; Re_* 100 as printed, u_* D/nu 600", said)
         self.assertIn("mean grain 1 m, 1 kg; reduced gravity 1 m/s^2", said)
         self.assertIn("grain units: m stands for the mean diameter D", said)
+
+    def test_the_coefficients_of_the_force_follow_from_the_numbers_of_the_case(self):
+        # docs/theory.md, section 4b, in units in which D, m and g' are 1: B_1 from Re_*, or from a sixth of u_* D/nu,
+        # B_2 as given, and the velocity at which Theta is 2/3 (B_1 v_0 + B_2 v_0^2).
+        for settings, theta, reynolds, b2 in (
+            ((), 0.5, 100, 0.5),
+            (("reynolds_number=null", "shear_reynolds_number=240", "inertial_coefficient=0.8", "shields_number=0.3"),
+             0.3, 40, 0.8),
+            (("drag=linear", "reynolds_number=10"), 0.5, 10, 0.0),
+        ):
+            with self.subTest(settings=settings):
+                words = [word for s in settings for word in ("--set", f"model_fluid.{s}")]
+                said = self.run_well("check", self.case, *words).stdout
+                numbers = re.search(r"fluid at (\S+) m/s at the top of the bed; B_1 (\S+) kg/s, B_2 (\S+) kg/m", said)
+                velocity, *found = map(float, numbers.groups())
+                b1 = (3 * theta) ** 0.5 / reynolds
+                numpy.testing.assert_allclose(found, (b1, b2), rtol=5.1e-4)   # four digits
+                self.assertAlmostEqual((b1 * velocity + b2 * velocity ** 2) / (1.5 * theta), 1, delta=1.1e-3)
 
     def test_refusals(self):
         for settings, words in (
