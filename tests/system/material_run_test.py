@@ -50,6 +50,24 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
         # The arithmetic mean would give 0.20 in place of 0.095, the harmonic one 0.045, the smaller friction 0.024.
         self.assertAlmostEqual(v[0, 1], 0.1 * (1 + 0.9) * 1.0 / 2, delta=0.04)
 
+    def test_a_liquid_bridge_takes_its_work_from_grains_that_part(self):
+        # docs/theory.md, section 4: the pull of Willett et al. (2000) from the touch to where the bridge breaks, and a
+        # contact without a loss. The bridge forms in the first sub-step of a contact, in which they move by 3e-8 m of
+        # the 2.8e-4 m.
+        tension, angle, volume, radius = 0.06, 0.6, 1.0e-11, 2.5e-3
+        gap = numpy.linspace(0.0, (1 + angle / 2) * volume ** (1 / 3), 10001)
+        s = gap * (radius / volume) ** 0.5
+        pull = 2 * numpy.pi * radius * tension * numpy.cos(angle) / (1 + 1.05 * s + 2.5 * s ** 2)
+        work = (0.5 * (pull[1:] + pull[:-1]) * numpy.diff(gap)).sum()
+        mass = 2550 * numpy.pi / 6 * (2 * radius) ** 3
+        before = 1.5 * (4 * work / mass) ** 0.5   # relative; at 1.0 they would stick
+        v = self.velocities(
+            f"grains.0.velocity=[{before / 2}, 0, 0]", f"grains.1.velocity=[{-before / 2}, 0, 0]",
+            "grains.1.placement.positions=[[0.0150001, 0.01, 0.01]]", "run.until=0.03", "contact={restitution: 1.0, "
+            f"friction: 0.0, liquid_bridge: {{surface_tension: {tension}, contact_angle: {angle}, volume: {volume}}}}}",
+        )
+        self.assertAlmostEqual((v[1, 0] - v[0, 0]) / (before ** 2 - 4 * work / mass) ** 0.5, 1.0, delta=2e-3)
+
     def test_walls_have_their_own_restitution_and_stiffness(self):
         falling = "grains=[{diameter: 5.0e-3, density: 2550, placement: {positions: [[0.01, 0.01, 0.003]]}, " \
                   "velocity: [0, 0, -0.5]}]"
@@ -145,6 +163,38 @@ run: {until: 3.0e-3, time_step: 5.0e-7}
                             "contact.walls.normal_stiffness=80000", words=["run.time_step", "7.17e-06"])
         self.assert_refused("check", self.case, "--set", "run.time_step=9.0e-6", "--set",
                             "grains.0.diameter=4.0e-3", words=["run.time_step", "7.26e-06"])
+
+
+class OnASlope(ProgramTest):
+    # Three spheres that are one body, and slide without rolling where it is steep enough.
+    CASE = """
+system: grains
+name: slide
+domain:
+  size: [0.02, 0.02, 0.02]
+  spacing: 1.0e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+gravity: {magnitude: 9.8, slope: 0.5}
+grains:
+  - density: 2550
+    shape: {clump: [{position: [0, 0, 0], diameter: 5.0e-3}, {position: [6.0e-3, 0, 0], diameter: 5.0e-3},
+                    {position: [3.0e-3, 5.0e-3, 0], diameter: 5.0e-3}]}
+    orientation: {axis: [0, 0, 1], angle: 0}
+    placement: {positions: [[0.01, 0.01, 2.5e-3]]}
+contact: {normal_stiffness: 20000, tangential_stiffness: 5714, restitution: 0.5, wall_friction: 0.8}
+run: {until: 0.1, time_step: 5.0e-6}
+"""
+
+    def test_what_slides_does_so_under_the_share_of_friction_that_is_given(self):
+        # Steeper than friction, so that it slides at once, down a slope S with t g (sin - mu cos). It sticks while the
+        # springs of its contacts yield and it bumps on the floor, for a millisecond or so.
+        slope = 0.9
+        for ratio, friction in ((0.25, 0.2), (1.0, 0.8)):
+            self.run_well("run", self.case, "--overwrite", "--set", f"gravity.slope={slope}", "--set",
+                          f"contact.kinetic_friction_ratio={ratio}")
+            time, speed = self.summary("run")["simulated_time"], self.bed()["velocity"][:, 0].mean()
+            expected = time * 9.8 * (slope - friction) / (1 + slope ** 2) ** 0.5
+            self.assertAlmostEqual(speed, expected, delta=0.02 * 9.8 * time, msg=ratio)
 
 
 program.main()
