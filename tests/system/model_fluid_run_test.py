@@ -130,6 +130,12 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
         self.assertGreater(low.sum(), 5)
         self.assertEqual(abs(bed["velocity"][low, :2]).max(), 0.0)
         self.assertGreater(abs(bed["velocity"][~low, 0]).max(), 0.1)
+        # The floor has no friction here: without the roughness it holds none.
+        self.run_well("run", self.case, "--until", "15", "--out", "smooth", "--set", "model_fluid.rough_floor=false")
+        bed = self.bed("smooth")
+        low = bed["position"][:, 2] < bed["radius"]
+        self.assertGreater(low.sum(), 5)
+        self.assertTrue((abs(bed["velocity"][low, :2]).max(axis=1) > 0.0).all())
 
     def test_a_bed_comes_to_rest_well_below_the_threshold_and_not_well_above(self):
         # Clark et al. (2017): at high Re_* quadratic drag needs a Shields number of 0.11.
