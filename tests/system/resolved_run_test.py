@@ -228,5 +228,46 @@ analysis: {wall_forces: {}, population_loads: {}}
         self.assertAlmostEqual(lift / (1200 * 9.8 * numpy.pi / 6 * 5e-3 ** 3), 1, delta=0.02)
 
 
+class Film(ProgramTest):
+    """A sphere that is moved along a floor and towards it, turns, and leaves a film of oil."""
+    CASE = """
+system: resolved
+name: film
+domain:
+  size: [0.012, 0.012, 0.012]
+  spacing: 0.5e-3
+  boundaries: {x: periodic, y: periodic, bottom: no_slip, top: free_slip}
+fluid: {density: 1000, kinematic_viscosity: 1.0e-4, time_step: 2.0e-4, subgrid_model: none, collision: trt}
+gravity: {magnitude: 9.8}
+grains:
+  - diameter: 5.0e-3
+    density: 2500
+    prescribed_velocity: [0.01, 0, -0.02]
+    prescribed_angular_velocity: [0, 3, 0]
+    placement: {positions: [[0.006, 0.006, 0.0028]]}
+contact: {restitution: 0.5}
+coupling: {lubrication: {normal_cut_off: 1.0, tangential_cut_off: 0.8, minimum_gap: 0.08}, links: cli}
+run: {until: 0.008}
+output: {series: {every: 0.002}}
+analysis: {wall_forces: {}, population_loads: {}}
+"""
+
+    def test_lubrication_has_the_cut_offs_of_the_case(self):
+        # docs/theory.md, section 3, "Lubrication", at a wall: r = R and q = 0. Cut-offs of 0.5 and 0.4 mm; the gap
+        # falls from 0.3 to 0.14 mm, and counts as 0.2 mm, 0.08 R, where it is less.
+        self.run_well("run", self.case)
+        series, radius, viscosity = self.series(), 2.5e-3, 0.1
+        gap = 0.3e-3 - 0.02 * series["time"]
+        film = numpy.maximum(gap, 0.2e-3)
+        normal = 6 * numpy.pi * viscosity * radius ** 2 * 0.02 * (1 / film - 1 / 0.5e-3)
+        sliding = 0.01 - 3 * (radius + gap)   # of the surfaces, at the floor
+        along = numpy.pi * viscosity * numpy.log(0.4e-3 / film) * (
+            -16 / 5 * radius * sliding - 12 / 5 * radius ** 2 * 3)
+        for name, expected in (("z", normal), ("x", along)):
+            self.assertGreater(abs(expected).min(), 1e-7)
+            numpy.testing.assert_allclose(series[f"grains_0_contact_force_{name}"], expected, rtol=1e-6)
+            numpy.testing.assert_allclose(series[f"wall_force_bottom_{name}"], -expected, rtol=1e-6)
+
+
 if __name__ == "__main__":
     program.main()
