@@ -113,6 +113,51 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
                 drag = 18 * phi * (1 - phi) * 1e-3 * law(phi, reynolds) * along / 5e-3 ** 2
                 numpy.testing.assert_allclose(column["drag_density"][grains, 0], drag, rtol=1e-6)
 
+    def test_pressure_stress_and_drift_are_those_of_the_closures_chosen(self):
+        # Eqs. 20 to 24 with numbers of its own for every key, as docs/theory.md, section 4c, has them: pressures in the
+        # middle of cells, stresses on the faces between them, of which the profile has the mean of two.
+        mu_1, mu_2, densest, b, a, elastic, gap, creeping = 0.4, 0.8, 0.6, 7.0, 0.9, 3.0e5, 0.004, 0.01
+        factor, shortest, schmidt = 2.5, 0.3, 0.5
+        column = self.column_with(
+            f"closures.rheology={{static_friction: {mu_1}, limit_friction: {mu_2}, densest_fraction: {densest}, "
+            f"friction_scale: {b}, dilation: {a}, elastic_modulus: {elastic}, smallest_gap: {gap}, "
+            f"creeping_rate: {creeping}}}",
+            f"closures.turbulence={{mixing_length_factor: {factor}, smallest_mixing_length: {shortest}, "
+            f"schmidt_number: {schmidt}, strain_norm: frobenius}}",
+        )
+        phi, d, eta, dz = column["solid_fraction"], 5e-3, 1e-3, column["thickness"][0]
+        grains, fluid = column["grain_velocity"][:, 0], column["fluid_velocity"][:, 0]
+
+        def between(values):
+            return 0.5 * (values[1:] + values[:-1])
+
+        def expect(name, expected, of):
+            self.assertGreater(of.sum(), 10, name)
+            numpy.testing.assert_allclose(column[name][of], expected[of], rtol=1e-5, err_msg=name)
+
+        rate = numpy.diff(grains) / dz
+        in_cells = numpy.concatenate([[0.0], abs(between(rate)), [0.0]])
+        pressure = elastic * numpy.maximum(0.0, phi - densest) + (a * phi / numpy.maximum(densest - phi, gap)) ** 2 * (
+            2 * eta * in_cells + 2550 * (d * in_cells) ** 2)
+        inside = numpy.arange(len(phi)) % (len(phi) - 1) > 0
+        dense = inside & (phi > 1e-2)
+        expect("grain_pressure", pressure, dense)
+        self.assertTrue((phi > densest).any() and (in_cells[phi < densest - gap] > 1.0).any())   # both parts of it
+
+        face_phi, face_pressure = between(phi), between(column["grain_pressure"])
+        viscous = eta * abs(rate) / face_pressure
+        mixed = numpy.sqrt(2 * viscous + rate ** 2 * d ** 2 * 2550 / face_pressure)
+        friction = mu_1 + (mu_2 - mu_1) / (1 + b / mixed) + 2.5 * face_phi * viscous * (1 / (a * mixed) + 1)
+        stress = friction * face_pressure * rate / numpy.hypot(rate, creeping)
+        deep = dense & (numpy.minimum(numpy.roll(phi, -1), phi) > 1e-2)   # and so is the cell above
+        expect("grain_shear_stress", numpy.concatenate([[0.0], between(stress), [0.0]]), deep)
+
+        length = d * numpy.maximum(factor * numpy.maximum(0.0, densest - face_phi) ** 3, shortest)
+        eddy = (1 - face_phi) * 1000 * length ** 2 * abs(numpy.diff(fluid) / dz) / 2 ** 0.5
+        expect("eddy_viscosity", numpy.concatenate([[0.0], between(eddy), [0.0]]), deep)
+        drift = -eddy / (1000 * schmidt) * numpy.diff(phi) / dz / (face_phi + 1e-3)
+        expect("drift_velocity", numpy.concatenate([[0.0], between(drift), [0.0]]), deep)
+
     def test_the_creep_is_a_solution_of_its_equation(self):
         # Eq. 29 as docs/theory.md has it, by central differences on the points of the profile, which the program uses,
         # too: to the rounding of a second difference.
