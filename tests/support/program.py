@@ -180,6 +180,8 @@ class SideBySide:
                 every.testsRun += result.testsRun
                 every.failures += result.failures
                 every.errors += result.errors
+                every.skipped += result.skipped
+                every.unexpectedSuccesses += result.unexpectedSuccesses
         return every
 
 
