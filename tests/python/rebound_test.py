@@ -2,7 +2,14 @@
 import unittest
 
 import made_up_folder  # noqa: F401 (where the package is)
-from thalweg.rebound import impacts
+from thalweg.rebound import impacts, settling_time
+
+
+class SettlingTime(unittest.TestCase):
+    def test_is_that_of_sound_around_half_a_grain(self):
+        # Half a circumference of pi 2.5 mm at the speed of sound, 0.5 mm/(sqrt(3) 0.1 ms) = 2.88675 m/s.
+        case = {"grains": [{"diameter": 5.0e-3}], "domain": {"spacing": 0.5e-3}, "fluid": {"time_step": 1.0e-4}}
+        self.assertAlmostEqual(settling_time(case), 7.853982e-3 / 2.886751, delta=1e-9)
 
 
 class Impacts(unittest.TestCase):

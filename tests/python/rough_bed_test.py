@@ -40,6 +40,7 @@ class RoughBed(MadeUpFolder):
         flow = rough_flow(Run(self.folder), start=10.0)
         self.assertAlmostEqual(flow.friction_velocity, np.sqrt(9.81 * np.sin(np.arctan(0.0025)) * 0.0235))
         self.assertAlmostEqual(flow.depth, 4.7)
+        self.assertAlmostEqual(flow.grain_reynolds, flow.friction_velocity * 5.0e-3 / 1e-6)
         self.assertAlmostEqual(flow.roughness, ROUGHNESS, places=6)
         self.assertAlmostEqual(von_karman_number(Run(self.folder)), VON_KARMAN, places=6)
 

@@ -101,10 +101,10 @@ class VisibleProfiles(unittest.TestCase):
             position=np.array([[2.0, 1, 4.0], [8.0, 1, 5.0], [8.05, 2.5, 5.0]]), radius=np.full(3, 0.5),
             velocity=np.array([[1.0, 9, 0], [3.0, 9, 0], [50, 50, 50]]),
         )
-        sums = VisibleSums(np.array([-0.5, 0.5, 1.5]), 10.0)
+        sums = VisibleSums(np.array([-1.5, 0.5, 2.5]), 10.0)
         sums.add(frame, surface)
         found = sums.profiles()
-        np.testing.assert_allclose(found["areal_fraction"], (0.0, 2 * np.pi / 4 / 10.0), rtol=1e-12)
+        np.testing.assert_allclose(found["areal_fraction"], (0.0, 2 * np.pi / 4 / (10.0 * 2.0)), rtol=1e-12)
         np.testing.assert_allclose(found["velocity"][1], (2.0, 0.0), rtol=1e-12)
         np.testing.assert_allclose(found["temperature"][1], 0.5, rtol=1e-12)  # half of the variance 1 of two components
         self.assertTrue(np.isnan(found["temperature"][0]))

@@ -114,6 +114,11 @@ class TwoPhases(MadeUpFolder):
         # At phi -> 0 both laws are those of a single sphere; at phi 0.5 and slow flow 20 + 0.25 (1 + 1.5 sqrt(0.5)).
         self.assertAlmostEqual(beetstra_drag(0.5, 1e-12), 20.515165, places=5)
         self.assertAlmostEqual(tenneti_drag(1e-12, 100.0), 1.0 + 0.15 * 100.0**0.687, places=2)
+        # At phi 0.25 and Re 100: 100^-0.343 = 0.206063, 100^0.687 = 23.6592, 10^0.75 = 5.623413, 0.25^(1/3) = 0.629961.
+        # Beetstra: 10/4/0.5625 + 0.5625 (1 + 0.75) and 41.3/(24 0.5625) (4/3 + 0.5625 + 8.4 0.206063)/1.056234.
+        self.assertAlmostEqual(beetstra_drag(0.25, 100.0), 5.428819 + 3.059259 * 3.626763 / 1.056234, places=5)
+        # Tenneti: 0.75 times 4.54888/0.421875 + 1.4525/0.421875 + 0.302381/0.316406 + 1.5625 (0.95 + 0.61/64/0.5625).
+        self.assertAlmostEqual(tenneti_drag(0.25, 100.0), 0.75 * (10.782531 + 3.442963 + 0.955674 + 1.510851), places=4)
 
 
 if __name__ == "__main__":
