@@ -56,8 +56,12 @@ double given_speed(const Case& c) {
   return fastest;
 }
 
+bool has_clumps(const beds::Population& grains) { return grains.clumps.count > 0; }
+
+// Of clumps by their nominal diameters.
 double largest_over_smallest(const beds::Population& grains) {
-  return grains.shape ? grains.coarsest() / grains.finest() : grains.largest_diameter() / grains.smallest_diameter();
+  return has_clumps(grains) ? grains.coarsest() / grains.finest()
+                            : grains.largest_diameter() / grains.smallest_diameter();
 }
 
 // Ratio of masses of spheres, disks or clumps of one shape and density whose sizes have this ratio.
@@ -85,9 +89,10 @@ void add_overlaps(const Case& c, const beds::Population& grains, const dem::Cont
   for (const double ratio : {1.0, largest_over_smallest(grains)}) {
     const double d = ratio * grains.smallest_diameter();
     const double mass = share * grains.lightest_mass() * ratio_of_masses(grains, ratio);
-    const double width = c.disks ? c.disks->thickness : d;
+    const double size = ratio * (has_clumps(grains) ? grains.finest() : grains.smallest_diameter());
+    const double width = c.disks ? c.disks->thickness : size;
     if (!periodic_axes(c.domain)[2])
-      found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * d * width, d) / d);
+      found.under_weight = std::max(found.under_weight, overlap_under(material, pressure * size * width, d) / d);
     if (!grains.held())
       found.in_impact = std::max(found.in_impact, overlap_in_impact(material, mass, found.speed, d) / d);
   }

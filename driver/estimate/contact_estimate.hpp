@@ -10,9 +10,11 @@ namespace thalweg::driver {
 // Overlaps of the softest contact between two grains of a population, or with walls that have a stiffness of their own
 // (linear law), over their diameter; 0 without grains.
 struct Overlaps {
-  double under_weight;  // at the base of the settled bed: each grain carries the weight above its own d^2
-  double in_impact;     // of two free grains, or of one with a wall, at `speed`
-  double speed;         // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
+  // At the base of the settled bed: each grain carries the weight above its own d^2, a clump that above the square of
+  // its nominal diameter on one member.
+  double under_weight;
+  double in_impact;  // of two free grains, or of one with a wall, at `speed`
+  double speed;      // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
 };
 Overlaps expected_overlaps(const Case& c);
 

@@ -1,6 +1,7 @@
 #include "driver/estimate/contact_estimate.hpp"
 
 #include "driver/warnings/case_warnings.hpp"
+#include "tests/driver/case_texts.hpp"
 #include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
@@ -66,6 +67,20 @@ TEST(Overlaps, OfAMixtureAreThoseOfItsLargestGrains) {
   const Overlaps mixed = expected_overlaps(c);
   EXPECT_NEAR(mixed.in_impact / mixed.speed, alike.in_impact / alike.speed, 0.01 * alike.in_impact / alike.speed);
   EXPECT_NEAR(mixed.under_weight, alike.under_weight, 0.01 * alike.under_weight);
+}
+
+// A clump carries as much as the sphere of its volume, on the spring of one member: p D^2/(k d) of its diameter d.
+TEST(Overlaps, OfClumpsAreThoseOfAMemberUnderTheWholeLoad) {
+  const std::string stiffness = "contact.normal_stiffness=600",
+                    shape =
+                        "grains.0.shape={clump: [{position: [0, 0, 0], diameter: 1.0}, {position: [0.5, 0, 0], "
+                        "diameter: 1.0}]}";
+  const Case spheres = testing::read_text(testing::flume, {stiffness}),
+             clumps = testing::read_text(testing::flume, {stiffness, shape});
+  const double narrower = clumps.grains[0].largest_diameter() / spheres.grains[0].largest_diameter(),
+               alike = expected_overlaps(spheres).under_weight;
+  EXPECT_LT(narrower, 0.9);
+  EXPECT_NEAR(expected_overlaps(clumps).under_weight, alike / narrower, 1e-6 * alike);
 }
 
 // Grains that are thrown at a wall or at held grains meet them as fast as they are thrown.
