@@ -232,6 +232,15 @@ output: {series: {every: 0.005}, checkpoint: {every: 0.01, keep: 3}}
         refused(["nowhere", "give a checkpoint"], "--set", "initial.from=nowhere")
         refused(["given twice"], "--set", "initial.fluid={uniform: [0.1, 0, 0]}")
 
+    def test_a_held_flow_goes_on_with_the_force_that_held_it(self):
+        self.run_well("run", self.case, "--out", "first", "--until", "0.01")
+        self.run_well("run", self.case, "--out", "next", "--set", "initial={from: first}", "--until", "1e-4")
+        before, after = self.series("first"), self.series("next")
+        self.assertEqual(after["time"][0], 0.0)
+        self.assertGreater(abs(before["body_force_x"][-1]), 1.0)   # N/m^3; a flow that begins has none
+        for name in ("body_force_x", "mean_velocity_x"):
+            self.assertEqual(after[name][0], before[name][-1], name)
+
     def test_grains_have_no_place_in_it(self):
         self.assert_refused("run", self.case, "--set", "grains=[{count: 1, diameter: 5e-3, density: 2550}]",
                             words=["grains", "system: fluid has no grains", "system: resolved"])
