@@ -100,6 +100,12 @@ class Layers(made_up.MadeUpFolder):
             with self.assertRaisesRegex(thalweg.RunFolderError, "nothing has been measured"):
                 bed.surface_by_solid_fraction(D * np.arange(5), np.full(5, nothing))
 
+    def test_the_surface_lies_between_two_layers(self):
+        # The centre of mass is at 2.76, below it the median is 0.6: 0.3 is half-way from 0.45 at 4.5 to 0.15 at 5.5. Of
+        # all layers with grains, those that fly included, the median is 0.3.
+        fraction = [0.5, 0.6, 0.7, 0.6, 0.45, 0.15, 0.02, 0.02, 0.02, 0.02]
+        self.assertAlmostEqual(bed.surface_by_solid_fraction(np.arange(10) + 0.5, fraction), 5.0, 12)
+
     def test_the_surface_by_solid_fraction(self):
         # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at
         # the top.
