@@ -94,11 +94,11 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
             return numpy.where(reynolds <= 1000, 1 + 0.15 * reynolds ** 0.687, 0.44 / 24 * reynolds) / (1 - phi) ** 3
 
         for settings, law in (
-            ((), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi)) / (1 - phi)),
-            (("drag=beetstra",), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi))),
+            ((), lambda phi, r: beetstra(phi, r, 10 ** (3 * phi)) / (1 - phi)),
+            (("drag=beetstra",), lambda phi, r: beetstra(phi, r, 10 ** (3 * phi))),
             (("drag=schiller",), schiller),
-            (("drag_crowding=printed",), lambda phi, re: beetstra(phi, re, 1000 * phi) / (1 - phi)),
-            (("drag_speed=streamwise", "drag=beetstra"), lambda phi, re: beetstra(phi, re, 10 ** (3 * phi))),
+            (("drag_crowding=printed",), lambda phi, r: beetstra(phi, r, 1000 * phi) / (1 - phi)),
+            (("drag_speed=streamwise", "drag=beetstra"), lambda phi, r: beetstra(phi, r, 10 ** (3 * phi))),
         ):
             with self.subTest(settings=settings):
                 column = self.column_with(*(f"closures.{setting}" for setting in settings))
