@@ -163,6 +163,19 @@ class Layers(made_up.MadeUpFolder):
         (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n")
         self.assertAlmostEqual(bed.shields_number(run, 10 * D), 0.08, 12)
 
+    def test_what_is_an_obstacle(self):
+        # docs/input.md, "Bed surface": of grains held at positions those at least twice as large as the largest free one,
+        # and those that overlap by more than a twentieth of the smaller diameter.
+        fixed = D * np.array([[3, 1, 3], [8, 1, 3], [13, 1, 1], [13.94, 1, 1], [17, 1, 1], [17.96, 1, 1]])
+        radius = D * np.array([1.01, 0.99] + 4 * [0.5] + [0.5, 0.4])   # the last two are free
+        places = np.vstack([fixed, D * np.array([[5, 1, 8], [6, 1, 8]])])
+        self.write_frames((0.0,), [places], radius=[radius])
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace(
+            "grains: [{", f"grains: [{{fixed: true, placement: {{positions: {fixed.tolist()}}}}}, {{"))
+        run = thalweg.Run(self.folder)
+        np.testing.assert_array_equal(np.flatnonzero(obstacles(run, run.grains[0])), (0, 2, 3))
+
     def test_grains_that_float_are_no_bed(self):
         # A raft of a layer below the lid, as dense as the bed.
         still = self.bed_of_layers(10)[:-1]
