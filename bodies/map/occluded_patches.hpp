@@ -86,7 +86,7 @@ private:
   PeriodicBox box_;                              // cells
   std::array<bool, 3> wall_below_, wall_above_;  // true where the block ends at a wall, along each axis
   const lbm::CellMap& cells_;
-  std::vector<Entry> patches_;  // in no order
+  std::vector<Entry> patches_;                               // in no order
   std::unordered_map<std::uint64_t, std::size_t> place_of_;  // in patches_, by key
 };
 

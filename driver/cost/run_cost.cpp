@@ -12,11 +12,11 @@ namespace thalweg::driver {
 
 namespace {
 
-// Costs on one core. Where memory is slow, a cell takes cell_cost times the traffic of the sweep alone, with halo, walls
-// and output; where it is fast, arithmetic bounds the cell, as it bounds every link. Vectors of 16 floats have twice the
-// registers of those of 8. Measured: a link 8e-9 s on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire Rapids, all
-// with 16, and 20e-9 on Zen 3 with 8; in double precision half as much again. Grain-steps: 20e6 to 39e6 per second. The
-// flume, the wide bed and the quickstart run within a third of the estimate on the three of AMD.
+// Costs on one core. Where memory is slow, a cell takes cell_cost times the traffic of the sweep alone, with halo,
+// walls and output; where it is fast, arithmetic bounds the cell, as it bounds every link. Vectors of 16 floats have
+// twice the registers of those of 8. Measured: a link 8e-9 s on AMD Zen 5, 13e-9 on Zen 4, 19e-9 on Intel Sapphire
+// Rapids, all with 16, and 20e-9 on Zen 3 with 8; in double precision half as much again. Grain-steps: 20e6 to 39e6 per
+// second. The flume, the wide bed and the quickstart run within a third of the estimate on the three of AMD.
 constexpr bool wide_vectors = std::experimental::native_simd<float>::size() >= 16;
 constexpr double cell_cost = 1.8;
 constexpr double cell_seconds = wide_vectors ? 6e-9 : 17e-9, link_seconds = wide_vectors ? 12e-9 : 20e-9;
