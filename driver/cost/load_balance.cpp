@@ -25,24 +25,11 @@ constexpr double cell_work = 6500.0, link_work = 13000.0, sub_step_work = 45000.
 
 using WorkProfile = std::array<std::vector<std::int64_t>, 3>;  // work in the cells with each coordinate along the axes
 
-double work_of_links(const Case& c, double diameter) {
-  return links_of_sphere(diameter / c.domain.spacing) * link_work;
-}
-
 double work_of_sub_steps(const Case& c) { return static_cast<double>(grain_steps(c)) * sub_step_work; }
 
 // A sphere, or a member of a clump.
-double work_of_grain(const Case& c, double radius) { return work_of_links(c, 2.0 * radius) + work_of_sub_steps(c); }
-
-// Of all grains: the links of each size, a clump with those of the sphere of its volume, and the sub-steps of members.
-double work_of_grains(const Case& c) {
-  double work = 0.0;
-  for (const beds::Population& population : c.grains) {
-    work += static_cast<double>(population.row_count()) * work_of_sub_steps(c);
-    for (const beds::SizeCount& size : population.sizes_of_grains())
-      work += static_cast<double>(size.count) * work_of_links(c, size.diameter);
-  }
-  return work;
+double work_of_grain(const Case& c, double radius) {
+  return links_of_sphere(2.0 * radius / c.domain.spacing) * link_work + work_of_sub_steps(c);
 }
 
 WorkProfile profile_of_cells(const Index3& cells) {
@@ -125,7 +112,8 @@ Decomposition planned_partition(const Case& c, const Index3& layout) {
   const Decomposition even = decomposition_of(c, layout);
   if (c.system != SystemKind::resolved) return even;
   WorkProfile profile = profile_of_cells(even.cells());
-  const double work = work_of_grains(c), height = settled_height(c);
+  const double work = link_count(c) * link_work + static_cast<double>(grain_rows(c)) * work_of_sub_steps(c),
+               height = settled_height(c);
   for (int a = 0; a < 3; ++a) {
     const double size = c.domain.size[a];
     add(work, 0.0, a == 2 && height > 0.0 ? std::min(height, size) : size, even, a, profile);

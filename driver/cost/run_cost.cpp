@@ -31,6 +31,9 @@ constexpr double program_bytes = 49e6;
 constexpr double flag_bytes = 16.0, link_bytes = 32.0, grain_bytes = 1150.0;
 constexpr double checkpoint_row_bytes = 100.0, frame_row_bytes = 350.0;
 
+}  // namespace
+
+double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells_across; }
 double link_count(const Case& c) {
   double links = 0.0;
   for (const beds::Population& population : c.grains)
@@ -38,10 +41,6 @@ double link_count(const Case& c) {
       links += static_cast<double>(size.count) * links_of_sphere(size.diameter / c.domain.spacing);
   return has_fluid(c) ? links : 0.0;
 }
-
-}  // namespace
-
-double links_of_sphere(double cells_across) { return 15.8 * cells_across * cells_across; }
 
 double bytes_per_value(const Case& c) { return c.fluid.precision == coupling::Precision::single ? 4.0 : 8.0; }
 double bytes_of_cell(const Case& c) { return 19.0 * bytes_per_value(c) + flag_bytes; }

@@ -31,7 +31,9 @@ double bytes_of_links(const Case& c);                // the links of all grains
 // written.
 analysis::ObserverMemory memory_of_observers(const Case& c);
 
-// Number of links of a sphere so many cells wide.
+// Number of links of a sphere so many cells wide, and of all grains of a case, clumps as the spheres of their volume; 0
+// without a fluid.
 double links_of_sphere(double cells_across);
+double link_count(const Case& c);
 
 }  // namespace thalweg::driver
