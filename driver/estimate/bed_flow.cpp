@@ -139,11 +139,15 @@ double depth_of(const Case& c, double hydraulic_radius) {
   return left > 0.0 ? surfaces(c) * hydraulic_radius * width / left : std::numeric_limits<double>::infinity();
 }
 
-double depth_with(const Case& c, double shields) {
+double hydraulic_radius_with(const Case& c, double shields) {
   const ReferenceGrain grain = reference_grain(c);
   const Vec3 gravity = gravity_vector(c.gravity);
   const double excess = grain.density / c.fluid.density - 1.0;
-  return depth_of(c, excess * grain.diameter * shields * gravity.norm() / gravity.x());
+  return excess * grain.diameter * shields * gravity.norm() / gravity.x();
+}
+
+double box_height(const Case& c, double depth) {
+  return c.domain.spacing * std::round((settled_height(c) + depth) / c.domain.spacing);
 }
 
 double settled_fraction(const Case& c) {

@@ -79,7 +79,10 @@ double hydraulic_radius(const Case& c, double depth);
 double depth_of(const Case& c, double hydraulic_radius);
 
 // m, of the flow that has this Shields number on the slope of the case, which leads down along x.
-double depth_with(const Case& c, double shields);
+double hydraulic_radius_with(const Case& c, double shields);
+
+// m, in whole cells, of a box with a flow of this depth (m) above the settled bed.
+double box_height(const Case& c, double depth);
 
 // Solid fraction of a settled bed: that of beds::settled_fraction(), or what a fill says of its population; without the
 // obstacles that stand in it.

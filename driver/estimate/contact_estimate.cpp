@@ -45,7 +45,7 @@ bool any_wall(const Case& c) {
 }
 
 // m/s, of free grains that start towards or past those of another population, or a wall, or come in.
-double given_speed(const Case& c) {
+double starting_speed(const Case& c) {
   double fastest = fastest_supply(c);
   for (const beds::Population& one : c.grains) {
     if (one.held()) continue;
@@ -75,7 +75,7 @@ double speed_of_a_fall(const Case& c) {
   return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
 }
 
-double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), given_speed(c)); }
+double impact_speed(const Case& c) { return std::max(speed_of_a_fall(c), starting_speed(c)); }
 
 // Effective mass of a contact over the mass of a grain: of two equal grains, and of a grain and a wall.
 constexpr double of_two = 0.5, with_wall = 1.0;

@@ -125,8 +125,8 @@ void refuse_other_flows(const Case& c, const FlowFilledIn& question, const io::Y
 }
 
 // m, of the water that has the Shields number on the slope of the case.
-double depth_for(const Case& c, double stress_height, const io::YamlDocument& document) {
-  const double radius = stress_height / std::sin(std::atan(*c.gravity.slope));
+double depth_for(const Case& c, const io::YamlDocument& document) {
+  const double radius = hydraulic_radius_with(c, *c.flow->shields_number);
   const double depth = depth_of(c, radius);
   if (!std::isfinite(depth)) {
     const double width = c.domain.size.y(), largest = width / side_walls(c);
@@ -170,8 +170,8 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
   double depth = c.domain.size.z() - bed;
   if (question.height) {
     if (!c.flow->depth) derived.filled_in.shields_number = c.flow->shields_number;
-    depth = c.flow->depth ? *c.flow->depth : depth_for(c, stress_height, document);
-    const double height = c.domain.spacing * std::round((bed + depth) / c.domain.spacing);
+    depth = c.flow->depth ? *c.flow->depth : depth_for(c, document);
+    const double height = box_height(c, depth);
     depth = height - bed;
     const std::string size = fmt::format("[{:.9g}, {:.9g}, {:.9g}]", c.domain.size.x(), c.domain.size.y(), height);
     derived.overrides.push_back("domain.size=" + size);

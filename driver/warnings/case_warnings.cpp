@@ -164,10 +164,8 @@ Warnings laminar_flow(const Case& c) {
 // Where the depth follows from the slope and a Shields number, water on a gentler slope is deeper.
 void set_slope(Case& c, double slope) {
   c.gravity.slope = slope;
-  if (const std::optional<double> shields = c.filled_in.flow.shields_number) {
-    const double height = settled_height(c) + depth_with(c, *shields);
-    c.domain.size.z() = c.domain.spacing * std::round(height / c.domain.spacing);
-  }
+  if (const std::optional<double> shields = c.filled_in.flow.shields_number)
+    c.domain.size.z() = box_height(c, depth_of(c, hydraulic_radius_with(c, *shields)));
 }
 
 // By the key that the case has: where the slope follows from a Shields number, that one.
