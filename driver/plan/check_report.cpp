@@ -277,10 +277,10 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   if (!can_be_placed_here(c))
     lines.push_back("           too many grains to be placed on this machine; the run checks whether they fit");
   lines.push_back(disk_line(disk_space(c), free_in_this_folder()));
-  lines.push_back(
-      fmt::format("time       about {} on one core like this one ({:.3g} GB/s), within a third; --ranks N,N,... "
-                  "measures it and predicts it on more cores",
-                  loop::clock_text(cost.core_seconds), bandwidth * 1e-9));
+  lines.push_back(fmt::format(
+      "time       about {} on one core like this one{}, within a third; --ranks N,N,... measures it and predicts it on "
+      "more cores",
+      loop::clock_text(cost.core_seconds), has_fluid(c) ? fmt::format(" ({:.3g} GB/s)", bandwidth * 1e-9) : ""));
 }
 
 std::string verdict_text(const Case& c, std::size_t warnings) {
