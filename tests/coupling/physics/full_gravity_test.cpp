@@ -163,7 +163,8 @@ TEST(FullGravity, LiftsAGrainAnywhereBetweenCellsByTheFluidItDisplaces) {
 
 // Three on the floor and one on top, all touching: what they hide from each other and the floor hides would be missing
 // otherwise. A patch of 1 cell on the floor, 20 cells under the middle of the water, would take away (3 F 20)/(3 F) =
-// 20 cells of volume, 4 % of a sphere, and those between the spheres push sideways as much.
+// 20 cells of volume, 4 % of a sphere, and those between the spheres push sideways as much: a quarter of this is
+// allowed. Torque: the centre of the covered cells is off the sphere's by a few hundredths of a radius at most.
 TEST(FullGravity, LiftsGrainsThatTouchEachOtherAndTheFloor) {
   WaterBox box = deep_box({36, 36, 60});
   box.links.rule = bodies::LinkRule::cli;

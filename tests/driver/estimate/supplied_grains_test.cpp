@@ -18,7 +18,7 @@ TEST(SuppliedGrains, HaveTheVolumeOfTheTransportRate) {
   Case c = water_over_glass(5e-3, 0.05, 0.04, 0.01, lbm::FaceType::law_of_the_wall);
   const ReferenceGrain grain = reference_grain(c);
   const double unit = std::sqrt((grain.density / 1000.0 - 1.0) * 9.8 * grain.diameter) * grain.diameter;
-  EXPECT_NEAR(unit_rate(c), unit * c.domain.size.y(), 1e-3 * unit_rate(c));
+  EXPECT_NEAR(unit_rate(c), unit * c.domain.size.y(), 1e-12 * unit_rate(c));
 
   beds::SupplyKeys supply;
   supply.transport_rate = 0.2;
