@@ -23,7 +23,8 @@ namespace {
 Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document, const std::string& key,
              const Ranks& ranks) {
   const auto check = [&] {
-    if (std::filesystem::is_regular_file(path)) return;
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(path, unknown) || unknown == std::errc::permission_denied) return;
     throw document.error(key, fmt::format("there is no file {}; give the path of a bed file relative to the case file, "
                                           "for example run/bed.h5 as thalweg run leaves it",
                                           path.string()));

@@ -44,6 +44,13 @@ bool sync(const std::filesystem::path& path) {
   return synced;
 }
 
+// The error of a file that the last call could not open or read.
+InputError cannot_read(const std::filesystem::path& path) {
+  if (errno == ENOENT || errno == ENOTDIR)
+    return InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
+  return InputError(fmt::format("{}: cannot read the file: {}.", path.string(), std::strerror(errno)));
+}
+
 }  // namespace
 
 void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
@@ -137,15 +144,19 @@ void remove_entry(const std::filesystem::path& path) {
   if (error) throw RunError(fmt::format("{}: cannot remove: {}.", path.string(), error.message()));
 }
 
+void check_readable(const std::filesystem::path& path) {
+  const int file = opened(path, O_RDONLY);
+  if (file < 0) throw cannot_read(path);
+  ::close(file);
+}
+
 std::string read_text(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
   std::ifstream file(path, std::ios::binary);
+  if (!file) throw cannot_read(path);
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file || std::filesystem::is_directory(path, ignored))
-    throw InputError(fmt::format("{}: cannot read the file: {}.", path.string(), std::strerror(errno)));
+  if (!file || std::filesystem::is_directory(path, ignored)) throw cannot_read(path);
   return text.str();
 }
 

@@ -53,6 +53,9 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
 // Removes a file, or a folder with all that it holds, if it is there. Throws RunError if it stays.
 void remove_entry(const std::filesystem::path& path);
 
+// Throws InputError, which says why, if a file cannot be opened for reading.
+void check_readable(const std::filesystem::path& path);
+
 // The whole file. Throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 

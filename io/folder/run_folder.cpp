@@ -73,11 +73,11 @@ void RunFolder::check_new(bool overwrite) const {
   if (!fs::is_directory(path_, ignored))
     throw InputError(
         fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
-  const bool has_something =
-      std::any_of(fs::directory_iterator(path_), fs::directory_iterator(), [](const auto& entry) {
-        // Files of a run that was killed at once.
-        return entry.path().filename() != unfinished_case && entry.path().filename() != FolderLock::file_name;
-      });
+  const std::vector<fs::path> entries = entries_of(path_);
+  const bool has_something = std::any_of(entries.begin(), entries.end(), [](const fs::path& entry) {
+    // Files of a run that was killed at once.
+    return entry.filename() != unfinished_case && entry.filename() != FolderLock::file_name;
+  });
   if (!has_something) return;
   if (!is_run_folder())
     throw InputError(
@@ -214,9 +214,9 @@ std::vector<fs::path> RunFolder::checkpoints_to_try() const {
 }
 
 std::vector<fs::path> checkpoints_at(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return RunFolder(path).checkpoints_to_try();
-  if (fs::exists(path, ignored)) return {path};
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) return RunFolder(path).checkpoints_to_try();
+  if (fs::exists(path, unknown) || unknown) return {path};  // what opens it says why it cannot be told
   throw InputError(
       fmt::format("{}: there is no such file or folder; give a checkpoint, for example "
                   "run/checkpoints/step_1000.h5, or a run folder.",

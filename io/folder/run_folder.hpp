@@ -19,7 +19,8 @@ public:
 
   // Makes the folder ready for a new run. Throws InputError if something is there already: a run without `overwrite`,
   // or anything that is not a run in any case. With `overwrite` only what a run writes is removed, and nothing else.
-  // check_new() only checks, so that a bad case can be refused before anything is written.
+  // check_new() only checks, so that a bad case can be refused before anything is written. RunError where the folder
+  // cannot be listed.
   void check_new(bool overwrite) const;
   void create(bool overwrite) const;
 

@@ -64,12 +64,12 @@ private:
   std::unique_ptr<File> file_;
 };
 
-// Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing, and
-// DamagedFile if it cannot be opened as HDF5. Reading throws InputError (naming file and path) where the path is
-// missing or of another shape or type, and DamagedFile where the ranks have read a whole dataset, shared out or each
-// all of it, and its checksum is another one; parts of a dataset are not checked. The constructor and read() are
-// collective; any rank alone may call the rest. Without a communicator the file is read by this process alone, also
-// where there is no MPI.
+// Reads what Hdf5Writer wrote, on any number of ranks. The constructor throws InputError if the file is missing or may
+// not be read, and DamagedFile if it cannot be opened as HDF5. Reading throws InputError (naming file and path) where
+// the path is missing or of another shape or type, and DamagedFile where the ranks have read a whole dataset, shared
+// out or each all of it, and its checksum is another one; parts of a dataset are not checked. The constructor and
+// read() are collective; any rank alone may call the rest. Without a communicator the file is read by this process
+// alone, also where there is no MPI.
 //
 // shape() has at least one number, and the file has room for so many values: else it throws InputError or DamagedFile.
 class Hdf5Reader final : public ArchiveReader {

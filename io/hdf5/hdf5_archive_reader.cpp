@@ -1,5 +1,7 @@
 #include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
+#include "core/parallel/on_first_rank.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/hdf5/checksum.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
 #include "io/hdf5/hdf5_dataset.hpp"
@@ -22,19 +24,15 @@ struct Hdf5Reader::File {
 
   void open() {
     silence_hdf5();
-    enum Outcome : int { well, missing, not_hdf5 };
-    int outcome = well;  // rank 0 looks before all open together
-    if (alone() || rank_of(communicator) == 0) {
-      std::error_code ignored;
-      if (!std::filesystem::exists(path, ignored))
-        outcome = missing;
-      else if (H5Fis_hdf5(path.c_str()) <= 0)
-        outcome = not_hdf5;
-    }
-    if (!alone()) MPI_Bcast(&outcome, 1, MPI_INT, 0, communicator);
-    if (outcome == missing) throw InputError(fmt::format("{}: there is no such file; check the path.", path.string()));
+    int is_hdf5 = 0;  // rank 0 looks before all open together
+    const auto look = [&] {
+      check_readable(path);
+      is_hdf5 = H5Fis_hdf5(path.c_str()) > 0 ? 1 : 0;
+    };
+    alone() ? look() : on_first_rank(communicator, look);
+    if (!alone()) MPI_Bcast(&is_hdf5, 1, MPI_INT, 0, communicator);
     const Handle access = alone() ? lone_access() : mpi_access(communicator, path);
-    if (outcome == well) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+    if (is_hdf5 != 0) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
     if (any(!file.good()))
       throw DamagedFile(fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.",
                                     path.string()));

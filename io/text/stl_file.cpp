@@ -208,8 +208,8 @@ private:
 TriangleMesh read_stl(const std::filesystem::path& path, const Ranks& ranks) {
   const std::string name = path.string();
   const std::string bytes = told_by_first_rank(ranks.communicator(), [&] {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(path, unknown) && unknown != std::errc::permission_denied)
       throw InputError(fmt::format("{}: there is no such file; give an STL file.", name));
     std::string text = read_text(path);
     constexpr std::size_t largest = std::size_t{1} << 34;  // bytes, of less than 2^31 corners

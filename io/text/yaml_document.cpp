@@ -207,7 +207,8 @@ YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<
   const std::string name = path.string();
   const auto location_of = [&](const YAML::Mark& mark) { return fmt::format("{}:{}", name, mark.line + 1); };
   const std::string text = told_by_first_rank(ranks.communicator(), [&] {
-    if (std::filesystem::is_directory(path))
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
       throw InputError(fmt::format("{}: this is a folder: give the case file itself, for example {}.", name,
                                    (path / "case.yaml").string()));
     return read_text(path);

@@ -355,6 +355,11 @@ TEST(YamlSection, MissingFilesAndFolders) {
   EXPECT_NE(
       message_of<InputError>([&] { YamlDocument(folder.path(), {}); }).find("this is a folder: give the case file"),
       std::string::npos);
+  std::filesystem::create_symlink("loop.yaml", folder / "loop.yaml");
+  EXPECT_NE(message_of<InputError>([&] {
+              YamlDocument(folder / "loop.yaml", {});
+            }).find("loop.yaml: cannot read the file: Too many levels of symbolic links."),
+            std::string::npos);
 }
 
 }  // namespace

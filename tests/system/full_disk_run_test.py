@@ -98,6 +98,25 @@ class NoPermission(SmallDisks):
             self.assert_refused("run", self.case, "--restart", "run", words=[words, "Permission denied"])
             (self.folder / path).chmod(before)
 
+    def test_what_may_not_be_read_is_named(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may read everywhere")
+        self.run_well("run", self.case, "--until", "0.05")
+        checkpoint = "run/checkpoints/" + (self.folder / "run/checkpoints/latest").read_text().strip()
+        (self.folder / checkpoint).chmod(0)   # an earlier one is no substitute for it
+        result = self.thalweg("run", self.case, "--restart", "run", ranks=2)
+        self.assertEqual(result.returncode, 2, result.stderr + result.stdout)
+        self.assertIn(f"thalweg: {checkpoint}: cannot read the file: Permission denied.\n", result.stderr)
+        for mode, command, path, why in (
+            (0o311, "run", "case.yaml", "run: cannot list the folder: Permission denied."),
+            (0, "check", "run/case.yaml", "run/case.yaml: cannot read the file: Permission denied."),
+            (0, "run", "run/case.yaml", "run/case.yaml: cannot read the file: Permission denied."),
+        ):
+            (self.folder / "run").chmod(mode)
+            result = self.thalweg(command, path)
+            (self.folder / "run").chmod(0o755)
+            self.assertEqual(result.stderr, f"thalweg: {why}\n")
+
     def test_a_file_system_that_is_read_only_is_refused(self):
         disk = self.mount(100, ",ro")
         self.assert_refused("run", self.case, "--out", disk / "run", ranks=2,

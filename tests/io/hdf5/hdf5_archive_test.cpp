@@ -172,6 +172,17 @@ TEST(Hdf5Archive, ReadErrorsNameFileAndPath) {
   EXPECT_NE(
       message_of<InputError>([&] { Hdf5Reader(MPI_COMM_WORLD, folder / "none.h5"); }).find("there is no such file"),
       std::string::npos);
+  // A link to itself cannot be read by root either. It is no damage, for which an earlier checkpoint would be taken.
+  if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::create_symlink("loop.h5", folder / "loop.h5");
+  MPI_Barrier(MPI_COMM_WORLD);
+  try {
+    Hdf5Reader(MPI_COMM_WORLD, folder / "loop.h5");
+    ADD_FAILURE() << "it was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              (folder / "loop.h5").string() + ": cannot read the file: Too many levels of symbolic links.");
+    EXPECT_EQ(dynamic_cast<const DamagedFile*>(&error), nullptr);
+  }
   if (rank_of(MPI_COMM_WORLD) == 0) testing::put(folder / "text.h5", "not HDF5");
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_NE(message_of<InputError>([&] { Hdf5Reader(MPI_COMM_WORLD, folder / "text.h5"); }).find("not an HDF5 file"),
