@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, and the checks
-tell a run that is as it should be from one that is not there.
+"""The tutorials: `thalweg check` has nothing to warn of, every case starts, every sweep can be listed, the pages quote what
+check prints, and the checks tell a run that is as it should be from one that is not there.
 
 Called by ctest: tutorials_run_test.py THALWEG MPIEXEC [unittest arguments]
 """
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,18 @@ from thalweg.case_file import read_case
 
 TUTORIALS = "cases/tutorials"
 STEPS = 20
+# Numbers on the page of a case, and in what check prints of it.
+QUOTED = (
+    ("tutorials/2_water_over_the_bed", r"\*\*Shields\*\* ([\d.]+), from the hydraulic radius",
+     r"([\d.]+) from the hydraulic radius"),
+    ("tutorials/2_water_over_the_bed", r"\*\*flow\*\*: at most ([\d.]+) cells per step", r"flow .*: ([\d.]+) cells per step"),
+    ("tutorials/2_water_over_the_bed", r"From rest it would take ([\d.]+) s", r"from rest the flow takes about ([\d.]+) s"),
+    ("tutorials/4_settling_sphere", r"between Reynolds numbers of (\d+) and (\d+)", r"validated between (\d+) and (\d+)"),
+    ("tutorials/8_clump_from_a_scan", r"([\d.]+) cells across the shortest axis", r"([\d.]+) cells across the shortest axis"),
+    ("quickstart", r"From rest the flow would take ([\d.]+) s", r"from rest the flow takes about ([\d.]+) s"),
+    ("quickstart", r"([\d.]+) % of a diameter under the weight of the bed and ([\d.]+) %",
+     r"([\d.]+) % of a diameter under the weight of the bed, ([\d.]+) %"),
+)
 
 
 class Tutorials(ProgramTest):
@@ -63,6 +76,24 @@ class Tutorials(ProgramTest):
         for sweep in sweeps:
             listed = self.run_well("sweep", sweep, "--out", "run/sweep", "--dry-run").stdout
             self.assertGreaterEqual(listed.count("waiting"), 3, listed)
+
+    def test_the_pages_quote_what_check_prints(self):
+        for folder, on_page, in_report in QUOTED:
+            with self.subTest(folder=folder, on_page=on_page):
+                page = " ".join((ROOT / "cases" / folder / "README.md").read_text().split())
+                quoted = re.search(on_page, page).groups()
+                printed = re.search(in_report, self.run_well("check", f"cases/{folder}/case.yaml").stdout).groups()
+                for number, exact in zip(quoted, printed):
+                    digits = len(number.partition(".")[2])
+                    self.assertEqual(number, f"{float(exact):.{digits}f}")
+
+    def test_the_page_on_stability_has_the_density_limit_of_the_quickstart(self):
+        case = read_case(ROOT / "cases/quickstart/case.yaml")
+        fluid, grains, spacing = case["fluid"], case["grains"][0], case["domain"]["spacing"]
+        weight = 2 / 3 * (grains["density"] - fluid["density"]) * case["gravity"]["magnitude"] * grains["diameter"]   # Pa
+        per_cent = 100 * weight / (fluid["density"] * (spacing / fluid["time_step"]) ** 2 / 3)
+        page = (ROOT / "docs/stability.md").read_text()
+        self.assertEqual(re.findall(r"In `cases/quickstart` that is (.*?)%", page), [f"{weight:.0f} Pa or {per_cent:.2f} "])
 
     def test_a_run_that_is_not_there(self):
         scripts = sorted((ROOT / TUTORIALS).glob("*/check.py"))
