@@ -233,10 +233,10 @@ Warnings coarse_cells(const Case& c) {
   const Case after = changed(c, {finer});
   const Change step =
       fluid_step_change(fluid_time_step(c) * after.domain.spacing / c.domain.spacing, 3, Rounding::down);
-  const Change accepted =
-      number_change("coupling.fewest_cells_per_diameter", std::floor(10.0 * cells) / 10.0, 6, Rounding::down,
-                    [](Case& other, double to) { other.coupling.fewest_cells_per_diameter = to; });
-  return {{fmt::format("The smallest grain is only {:.2g} cells across{}; its drag is {} (docs/accuracy.md)", cells,
+  const double no_more = std::floor(10.0 * cells * (1.0 + whole_number_tolerance)) / 10.0;  // 5.9 of 5.998
+  const Change accepted = number_change("coupling.fewest_cells_per_diameter", no_more, 6, Rounding::down,
+                                        [](Case& other, double to) { other.coupling.fewest_cells_per_diameter = to; });
+  return {{fmt::format("The smallest grain is only {:g} cells across{}; drag {} (docs/accuracy.md)", no_more,
                        cells < barely_resolved ? ", which does not resolve the flow around it" : "", drag_text(c)),
            {{c.filled_in.time_step ? Remedy{finer} : Remedy{finer, step}, {}}, {{accepted}, "accept it with "}},
            "finer cells"}};

@@ -147,7 +147,11 @@ TEST(Case, WarnsOfCoarseCellsUnlessTheyAreAccepted) {
   EXPECT_EQ(warning(), "");
   c.domain.spacing = smallest_diameter(c) / 5.5;
   c.domain.size = Vec3(132, 44, 117) * c.domain.spacing;
-  EXPECT_NE(warning().find("The smallest grain is only 5.5 cells across; its drag"), std::string::npos) << warning();
+  EXPECT_NE(warning().find("only 5.5 cells across; drag of a grain alone in a stream about"), std::string::npos)
+      << warning();
+  c.domain.spacing = smallest_diameter(c) / 5.998;
+  c.domain.size = Vec3(144, 48, 128) * c.domain.spacing;
+  EXPECT_NE(warning().find("only 5.9 cells across; drag"), std::string::npos) << warning();
   c.domain.spacing = smallest_diameter(c) / 3.25;
   c.domain.size = Vec3(78, 26, 69) * c.domain.spacing;
   EXPECT_NE(warning().find("only 3.2 cells across, which does not resolve"), std::string::npos) << warning();
