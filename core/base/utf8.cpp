@@ -58,4 +58,12 @@ std::string as_utf8(std::string_view text) {
   }
 }
 
+std::optional<unsigned> control_character(std::string_view text) {
+  const auto byte = [text](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U; };
+  if (byte(0) < 0x20 || byte(0) == 0x7F) return byte(0);
+  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) return byte(1);
+  if (byte(0) == 0xEF && byte(1) == 0xBF && byte(2) >= 0xBE) return 0xFFC0U + (byte(2) & 0x3FU);
+  return std::nullopt;
+}
+
 }  // namespace thalweg

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,5 +16,9 @@ inline bool is_utf8(std::string_view text) { return first_not_utf8(text) == text
 
 // The text with U+FFFD in place of every byte that is no part of a character.
 std::string as_utf8(std::string_view text);
+
+// The character that a text begins with where it is a control character (below U+0020, U+007F to U+009F) or none at all
+// (U+FFFE, U+FFFF): what YAML does not allow, but for tab and line ends. text: in UTF-8, not empty.
+std::optional<unsigned> control_character(std::string_view text);
 
 }  // namespace thalweg

@@ -1,11 +1,14 @@
 #include "io/text/section_writer.hpp"
 
+#include "core/base/utf8.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace thalweg::io {
@@ -15,13 +18,15 @@ constexpr std::size_t comment_column = 44, last_column = 110;
 
 std::string yaml_text(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      result += fmt::format("\\{}", c);
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)  // which the reader refuses
-      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
-    else
-      result += c;
+  for (std::string_view rest = text; !rest.empty(); rest.remove_prefix(1)) {
+    if (rest[0] == '"' || rest[0] == '\\') {
+      result += fmt::format("\\{}", rest[0]);
+    } else if (const auto code = control_character(rest)) {  // which the reader refuses
+      result += *code < 0x100 ? fmt::format("\\x{:02x}", *code) : fmt::format("\\u{:04x}", *code);
+      rest.remove_prefix(*code < 0x80 ? 0 : *code < 0x100 ? 1 : 2);
+    } else {
+      result += rest[0];
+    }
   }
   return result + "\"";
 }

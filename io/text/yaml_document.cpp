@@ -81,9 +81,13 @@ std::size_t lone_return(std::string_view text) {
   return at;
 }
 
-bool is_control(char c) {
-  const auto code = static_cast<unsigned char>(c);
-  return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7F;
+// The first character that is none of a text; the size of the text if there is none.
+std::size_t first_control_character(std::string_view text) {
+  std::size_t at = 0;
+  while (at < text.size() &&
+         (text[at] == '\t' || text[at] == '\n' || text[at] == '\r' || !control_character(text.substr(at))))
+    ++at;
+  return at;
 }
 
 std::string place_of_byte(std::string_view text, std::size_t at, const PlaceOf& location_of) {
@@ -103,10 +107,9 @@ void refuse_odd_bytes(std::string_view text, const PlaceOf& location_of) {
         fmt::format("{}: a carriage return without a line feed stands here or below; save the text with "
                     "the line ends of Unix or Windows.",
                     place_at(at)));
-  if (const auto odd = std::find_if(text.begin(), text.end(), is_control); odd != text.end())
+  if (const std::size_t at = first_control_character(text); at < text.size())
     throw InputError(fmt::format("{}: a control character, {:#04x}, stands here; remove it, or save the file as text.",
-                                 place_at(static_cast<std::size_t>(odd - text.begin())),
-                                 static_cast<unsigned char>(*odd)));
+                                 place_at(at), control_character(text.substr(at)).value()));
 }
 
 // The first tab before the words of a line; npos if there is none.

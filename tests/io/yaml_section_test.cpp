@@ -116,7 +116,7 @@ const std::string minimal = "paint: red\nlength: 2.5\n";
 
 Cart full_cart() {
   Cart cart;
-  cart.name = "a \"quoted\" name: # \\ \xc3\xa4 \x7f\x1b";
+  cart.name = "a \"quoted\" name: # \\ \xc3\xa4 \x7f\x1b \xc2\x80\xc2\x9f\xc2\xa0\xef\xbf\xbe";
   cart.length = 1.0 / 3.0;
   cart.position = {0.1 + 0.2, 1e-300, 3.0};
   cart.seats = 5;
@@ -297,6 +297,10 @@ INSTANTIATE_TEST_SUITE_P(
             "--set name=caf\xE9: the byte 0xe9 here is not UTF-8; save the text as UTF-8."},
         Bad{"end_of_transmission", minimal + "seats: 3\n\x04\nseats: nonsense\n", "",
             "FILE:4: a control character, 0x04, stands here; remove it, or save the file as text."},
+        Bad{"utf_8_in_utf_8", minimal + "name: d\xC3\xA2\xC2\x80\xC2\x99\n", "",
+            "FILE:3: a control character, 0x80, stands here; remove it, or save the file as text."},
+        Bad{"no_character", minimal + "name: a\xEF\xBF\xBF\n", "",
+            "FILE:3: a control character, 0xffff, stands here; remove it, or save the file as text."},
         Bad{"zero", minimal + std::string("name: a\0b\n", 10), "",
             "FILE:3: a control character, 0x00, stands here; remove it, or save the file as text."},
         Bad{"escaped_zero", minimal + "name: \"a\\0b\"\n", "", "FILE:3: name: a text must not have a zero character."},

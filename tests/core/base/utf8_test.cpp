@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 namespace thalweg::utf8_test {
 namespace {
@@ -28,6 +29,19 @@ TEST(Utf8, OtherBytesAreReplaced) {
   EXPECT_EQ(as_utf8("\xED\xA0\x80"), replaced + replaced + replaced);
   EXPECT_EQ(as_utf8("\xF4\x90\x80\x80z"), replaced + replaced + replaced + replaced + "z");
   EXPECT_EQ(first_not_utf8("ab\xFF"), 2U);
+}
+
+TEST(Utf8, FindsControlCharacters) {
+  for (const char* good :
+       {" a", "~", "\xC2\xA0", "\xC3\x80", "\xEF\xBF\xBD", "\xEF\xBE\xBE", "\xF0\x9F\x8C\x8A", "\xC2"})
+    EXPECT_FALSE(control_character(good)) << good;
+  EXPECT_EQ(control_character("\tb"), 0x09U);
+  EXPECT_EQ(control_character(std::string_view("\0", 1)), 0x00U);
+  EXPECT_EQ(control_character("\x7F"), 0x7FU);
+  EXPECT_EQ(control_character("\xC2\x80"), 0x80U);
+  EXPECT_EQ(control_character("\xC2\x9F"), 0x9FU);
+  EXPECT_EQ(control_character("\xEF\xBF\xBE"), 0xFFFEU);
+  EXPECT_EQ(control_character("\xEF\xBF\xBF"), 0xFFFFU);
 }
 
 }  // namespace

@@ -49,6 +49,10 @@ TEST(CommandLine, QuotesWordsAsAShellDoes) {
   EXPECT_EQ(shell_word(""), "''");
   EXPECT_EQ(shell_word("mein lauf"), "'mein lauf'");
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("caf\xC3\xA9"), "'caf\xC3\xA9'");
+  // In one line, and without what case.yaml, which has the line as a comment, could not hold.
+  EXPECT_EQ(shell_word("it's\n\\2\x1B"), "$'it\\047s\\012\\1342\\033'");
+  EXPECT_EQ(shell_word("d\xC2\x80"), "$'d\\302\\200'");
   EXPECT_EQ(parse({"run", "my case.yaml", "--set", "a={b: 1}"}).command->line,
             "thalweg run 'my case.yaml' --set 'a={b: 1}'");
 }
