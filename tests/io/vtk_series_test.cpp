@@ -199,7 +199,7 @@ private:
 };
 
 TEST(VtkSeries, WritesAnInterruptedAndContinuedSeries) {
-  const std::filesystem::path folder = fmt::format("vtk_{}", size_of(MPI_COMM_WORLD));
+  const std::filesystem::path folder = fmt::format("scratch/vtk_{}", size_of(MPI_COMM_WORLD));
   if (rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder);
   MPI_Barrier(MPI_COMM_WORLD);
   Pictures pictures(folder);
