@@ -32,18 +32,29 @@ def has_profiles_of(run, start, stop):
 
 
 def bed_height(run, start=-np.inf, stop=np.inf):
-    """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none, times (s) are given, or grains
-    float over the bed, from the frames between them, in layers of a quarter of a diameter."""
-    if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any() and not any_float(run):
-        profiles = run.profiles["grain_profiles"]
-    else:
-        profiles = layer_profiles(run, start, stop, 0.25 * run.diameter, bed_only=True)
+    """Height (m) of the surface by solid fraction, from profiles.h5 or, if it has none, times (s) are given, or it holds
+    more than the bed, from the frames between them, in layers of a quarter of a diameter. Without times they are the
+    frames from the begin of the run's own means on."""
+    if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any():
+        if not more_than_the_bed(run):
+            profiles = run.profiles["grain_profiles"]
+            return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+        start = run.averaged_from("grain_profiles")
+    profiles = layer_profiles(run, start, stop, 0.25 * run.diameter, bed_only=True)
     return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
 
 
 def any_float(run):
     """Whether the last frame has grains that float over a bed of others."""
     return len(run.grains) > 0 and bool(floating(run, run.grains[-1]).any())
+
+
+def more_than_the_bed(run):
+    """Whether there is more in the box than the bed and water, as the frames tell: grains that float, obstacles, solids.
+    The means of profiles.h5 count such grains, and solids take no room from them. (Frames with clumps tell nothing.)"""
+    if not len(run.grains) or np.any(run.grains[-1].arrays.get("clump", -1) >= 0):
+        return False
+    return any_float(run) or is_obstructed(run)
 
 
 def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):

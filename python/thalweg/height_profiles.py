@@ -3,7 +3,7 @@ their figure, after fig. 7(a) of Zhang et al. (2022)."""
 import matplotlib.pyplot as plt
 import numpy as np
 
-from thalweg.bed import is_obstructed, surface_by_solid_fraction
+from thalweg.bed import bed_height, is_obstructed, more_than_the_bed, surface_by_solid_fraction
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.units import units_of
@@ -146,19 +146,26 @@ def draw_stresses(axes, run, scaled):
     axes.set(xlabel=f"shear stress [{units_of(run).mathematical('Pa')}]")
 
 
-def surface_or_floor(z, fraction):
+def surface_or_floor(run, z, fraction):
     """Height (m) from which heights count, and its name: the surface of the bed, or the floor where there is none,
-    because the grains reach the top."""
+    because the grains reach the top, or up to less than a diameter below it, as in a shear cell."""
+    means = "grain_profiles" if "grain_profiles" in run.profiles else "stress_balance"
     try:
-        return surface_by_solid_fraction(z, fraction), "bed surface"
+        surface = (
+            bed_height(run, run.averaged_from(means))
+            if more_than_the_bed(run)
+            else surface_by_solid_fraction(z, fraction)
+        )
     except RunFolderError:
         return 0.0, "floor"
+    return (surface, "bed surface") if run.size[2] - surface >= run.diameter else (0.0, "floor")
 
 
 def figure_of(run):
-    """Solid fraction, velocities and shear stresses; heights in diameters from the surface by solid fraction."""
+    """Solid fraction, velocities and shear stresses; heights in diameters from the surface by solid fraction, or from the
+    floor."""
     z, fraction, _ = grain_means(run)
-    surface, above = surface_or_floor(z, fraction)
+    surface, above = surface_or_floor(run, z, fraction)
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 4.6), sharey=True, layout="constrained",
                                                  width_ratios=(0.8, 1, 1.2))
 

@@ -7,6 +7,7 @@ import numpy as np
 import made_up_folder as made_up
 import thalweg
 from thalweg import bed, literature
+from thalweg.height_profiles import surface_or_floor
 from thalweg.layers import LayerSums, disk_below, layer_profiles, parts_in_layers, volume_below
 from thalweg.mesh_volume import volumes_in_layers
 from thalweg.obstacles import obstacles, union_in_layers
@@ -162,6 +163,28 @@ class Layers(made_up.MadeUpFolder):
         # It takes a part of the force of the slope, which only the run knows.
         (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.07\n1,0.09\n")
         self.assertAlmostEqual(bed.shields_number(run, 10 * D), 0.08, 12)
+
+    def test_means_that_hold_obstacles_do_not_tell_the_surface(self):
+        # profiles.h5 counts a sill of overlapping spheres like grains, up to 20 diameters; the bed ends at 10.
+        run, _, _ = self.with_a_post(fixed=True)
+        z = (np.arange(60) + 0.5) * 0.5 * D
+        fraction = np.where(z < 20 * D, 0.6, 0.0)
+        with h5py.File(self.folder / "profiles.h5", "w") as file:
+            file["grain_profiles/z"], file["grain_profiles/solid_fraction"] = z, fraction
+        self.assertLess(abs(bed.bed_height(run) / D - 10.0), 0.25)
+        surface, name = surface_or_floor(run, z, fraction)
+        self.assertLess(abs(surface / D - 10.0), 0.25)
+        self.assertEqual(name, "bed surface")
+
+    def test_grains_up_to_the_top_have_no_surface(self):
+        # Up to half a diameter below it, and up to two.
+        self.write_frames((0.0,), [self.bed_of_layers(10)])
+        run = thalweg.Run(self.folder)
+        z = (np.arange(120) + 0.5) * SIZE[2] / 120
+        for gap, right in ((0.5, (0.0, "floor")), (2.0, (SIZE[2] - 2.0 * D, "bed surface"))):
+            surface, name = surface_or_floor(run, z, np.where(z < SIZE[2] - gap * D, 0.5, 0.0))
+            self.assertLess(abs(surface - right[0]), SIZE[2] / 120)
+            self.assertEqual(name, right[1])
 
     def test_what_is_an_obstacle(self):
         # docs/input.md, "Bed surface": of grains held at positions those at least twice as large as the largest free one,
