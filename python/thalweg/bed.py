@@ -4,7 +4,7 @@ import numpy as np
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.means import at_equal_intervals
-from thalweg.obstacles import floating, obstacles
+from thalweg.obstacles import floating, has_members, obstacles
 from thalweg.run import DRAGGING
 from thalweg.side_view import static_surface
 
@@ -52,7 +52,7 @@ def any_float(run):
 def more_than_the_bed(run):
     """Whether there is more in the box than the bed and water, as the frames tell: grains that float, obstacles, solids.
     The means of profiles.h5 count such grains, and solids take no room from them. (Frames with clumps tell nothing.)"""
-    if not len(run.grains) or np.any(run.grains[-1].arrays.get("clump", -1) >= 0):
+    if not len(run.grains) or has_members(run, run.grains[-1]):
         return False
     return any_float(run) or is_obstructed(run)
 

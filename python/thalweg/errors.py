@@ -6,6 +6,10 @@ class RunFolderError(Exception):
     """One sentence about something the user can put right: which file, what is wrong, what to do."""
 
 
+class MissingField(RunFolderError, AttributeError):
+    """A field that a frame of the grains does not have, because the case leaves it out."""
+
+
 class MissingName(KeyError):
     """A name that is not among those of some data; says which names are near, and all that there are."""
 

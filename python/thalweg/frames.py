@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from thalweg.columns import Columns
-from thalweg.errors import RunFolderError
+from thalweg.errors import MissingField
 from thalweg.vtk_files import read_image, read_index, read_points, read_triangles
 
 GRAIN_UNITS = {"id": "1", "clump": "1", "radius": "m", "speed": "m/s", "position": "m", "velocity": "m/s",
@@ -55,7 +55,9 @@ class GrainFrame:
     def __getattr__(self, name):
         if name in GRAIN_UNITS:
             if name not in self.arrays:
-                raise AttributeError(f"{self.path} has no {name}")
+                raise MissingField(
+                    f"{self.path}: the frame has no {name}, which the fields of the output in the case leave out."
+                )
             return self.arrays[name]
         raise AttributeError(name)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
-from thalweg.obstacles import floating, obstacles, solids_in_layers, union_in_layers
+from thalweg.obstacles import floating, has_members, obstacles, solids_in_layers, union_in_layers
 
 UNITS = {"z": "m", "solid_fraction": "1", "velocity": "m/s", "flux": "m/s", "granular_temperature": "m^2/s^2",
          "contact_stress": "Pa", "fluid_stress": "Pa", "rotation_stress": "Pa"}
@@ -60,7 +60,7 @@ class LayerSums:
         return width * sum(parts_in_layers(self.edges, z + shift, radius, below) for shift in images)
 
     def add(self, frame):
-        if np.any(frame.arrays.get("clump", -1) >= 0):
+        if has_members(self.run, frame):
             raise RunFolderError(
                 "frames have the members of clumps, whose volumes overlap; analysis.grain_profiles in the case counts "
                 "clumps, in profiles.h5."

@@ -26,6 +26,12 @@ def distance(run, there, here):
     return np.linalg.norm(apart(run, there, here), axis=-1)
 
 
+def has_members(run, frame):
+    """Whether a frame has members of clumps: by its field `clump`, or by the case where that is left out."""
+    clump = frame.arrays.get("clump")
+    return bool(np.any(clump >= 0)) if clump is not None else run is not None and run.has_clumps
+
+
 def fixed_by_position(run, frame):
     """Which grains of a frame the case fixes at positions."""
     found = np.zeros(len(frame), bool)
@@ -62,7 +68,7 @@ def floating(run, frame):
     none, fluid = np.zeros(len(frame), bool), run.case.get("fluid")
     if not fluid or run.gravity[2] >= 0.0 or "density" not in frame.arrays:
         return none
-    if np.any(frame.arrays.get("clump", -1) >= 0):
+    if has_members(run, frame):
         return none
     free = np.asarray(frame.arrays.get("held", 0)).astype(int) & 1 == 0
     afloat = free & (frame.density <= (1.0 + NEUTRAL) * float(fluid["density"]))

@@ -235,6 +235,11 @@ class Run:
         held = ("fixed", "prescribed_velocity", "motion")
         return [grains for grains in populations if not any(grains.get(key) for key in held)] or populations
 
+    @property
+    def has_clumps(self):
+        """Whether there are clumps among the grains, of which frames have the members."""
+        return any(grains.get("shape") for grains in self.section("grains"))
+
     def reference(self, name):
         """What the run says of its reference grain (`diameter`, `density`) in every row of series.csv; None where there
         is no row, or the run is older than these columns."""

@@ -89,6 +89,13 @@ class Layers(made_up.MadeUpFolder):
         self.write_frames((0.0,), [np.array([[0.05, 0.005, 0.01], [0.053, 0.005, 0.01]])], clump=[np.array([0, 0])])
         with self.assertRaisesRegex(thalweg.RunFolderError, "grain_profiles"):
             layer_profiles(thalweg.Run(self.folder))
+        # Where the fields of the frames leave out which they are, the case tells.
+        self.write_frames((0.0,), [np.array([[0.05, 0.005, 0.01], [0.053, 0.005, 0.01]])])
+        layer_profiles(thalweg.Run(self.folder))
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("count: 969,", "count: 1, shape: {clump: [{}, {}]},"))
+        with self.assertRaisesRegex(thalweg.RunFolderError, "grain_profiles"):
+            layer_profiles(thalweg.Run(self.folder))
 
     def bed_of_layers(self, layers):
         """24 x 2 grains a layer, layers one diameter apart, and one grain that flies."""

@@ -85,6 +85,13 @@ class Figures(made_up.MadeUpFolder):
         out = self.folder / "visible.png"
         self.drawn(self.plot("visible", "--out", out), out)
 
+    def test_frames_without_velocities(self):
+        for n in range(8):
+            made_up.write_points(self.folder / f"grains/grains_{n}.vtp", np.zeros((1, 3)), {"radius": np.full(1, 1e-3)})
+        for kind in ("side", "film", "visible"):
+            self.refused(self.plot(kind), "the frame has no ")
+        self.drawn(self.plot("all"), self.folder / "transport_rate.png")
+
     def test_bed_profiles(self):
         self.refused(self.plot("profiles"), "no means of grains or fluid yet")
         self.write_profiles()

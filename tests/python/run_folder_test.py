@@ -343,6 +343,8 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertEqual(frame.arrays.units["contact_stress"], "Pa")
         np.testing.assert_allclose(frame.volume, np.pi / 6 * frame.diameter**3, rtol=1e-15)
         self.assertFalse(hasattr(frame, "fluid_stress"))
+        with self.assertRaisesRegex(thalweg.RunFolderError, "the frame has no fluid_stress"):
+            frame.fluid_stress
 
     def test_a_part_of_the_grains_may_show_none(self):
         (self.folder / "grain_parts/tracers").mkdir(parents=True)
