@@ -10,7 +10,7 @@ try:
     import thalweg.plot
     import thalweg.page.command
     import thalweg.sweep.command
-    from thalweg.errors import RunFolderError
+    from thalweg.errors import MissingName, RunFolderError
     from thalweg.report import report_of
     from thalweg.run import Run
 except ModuleNotFoundError as missing:
@@ -60,7 +60,7 @@ def main(arguments=None):
                "sweep": thalweg.sweep.command.sweep}
     try:
         return actions[wanted.command](wanted)
-    except RunFolderError as error:
+    except (RunFolderError, MissingName) as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:   # head, for example, has seen enough

@@ -4,6 +4,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import yaml
 
 from thalweg.case_file import read_case
 from thalweg.errors import MissingName, RunFolderError
@@ -33,7 +34,14 @@ class Run:
     @cached_property
     def case(self):
         """The case as it was run, as a dictionary; SI units."""
-        return read_case(self.folder / "case.yaml")
+        path = self.folder / "case.yaml"
+        try:
+            case = read_case(path)
+        except (yaml.YAMLError, ValueError):   # of text that is not UTF-8
+            case = None
+        if not isinstance(case, dict):
+            raise RunFolderError(f"{path} is damaged: it is not the case as a run writes it.")
+        return case
 
     @cached_property
     def series(self):

@@ -42,12 +42,18 @@ def read_series(path):
     of line is there."""
     if not path.exists():
         raise RunFolderError(f"{path}: there is no such file; is this the folder of a run?")
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text(encoding="utf-8", errors="replace")
     lines = [line for line in text[:text.rfind("\n") + 1].splitlines() if not line.startswith("#")]
     rows = list(csv.reader(lines))
-    if len(rows) < 2:
+    complete = [row for row in rows[1:] if len(row) == len(rows[0])]
+    if not complete:
         raise RunFolderError(f"{path}: there is no measurement in it yet.")
     headings = [HEADING.match(heading).groups() for heading in rows[0]]
-    values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(headings)])
+    try:
+        values = np.array([[float(v) for v in row] for row in complete])
+    except ValueError as error:
+        raise RunFolderError(
+            f"{path} is damaged: {error}; a restart of the run from before this row writes it again."
+        ) from None
     names = [name for name, _ in headings]
     return Columns(zip(names, values.T), {name: unit or "1" for name, unit in headings}, source=path, axes=("time",))

@@ -222,6 +222,13 @@ class Reports(made_up.MadeUpFolder):
             with self.assertRaisesRegex(thalweg.RunFolderError, "nothing to average"):
                 window(run, start, stop)
 
+    def test_a_series_without_time_is_said_in_a_sentence(self):
+        (self.folder / "series.csv").write_text("step [1],q_star [1]\n0,1\n")
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            self.assertEqual(program.main(["analyze", str(self.folder)]), 2)
+        self.assertIn("series.csv: there is no 'time'", said.getvalue())
+
     def test_the_command(self):
         self.assertEqual(program.main(["analyze", str(self.folder), "--from", "2"]), 0)
         numbers = json.loads((self.folder / "analysis" / "summary.json").read_text())

@@ -199,6 +199,18 @@ class RunFolder(made_up.MadeUpFolder):
             np.testing.assert_array_equal(series["time"], (0.0, 0.5), rest)
             np.testing.assert_array_equal(series["q_star"], (1.0, 2.0), rest)
 
+    def test_damaged_text_is_said_in_a_sentence(self):
+        series = self.folder / "series.csv"
+        for damage, words in ((b"0,1\n0.5x,2\n", "damaged: could not convert string to float: '0.5x'"),
+                              (b"0,\xff\n", "damaged: could not convert"), (b"0\n1,2,3\n", "no measurement in it yet")):
+            series.write_bytes(b"time [s],q_star [1]\n" + damage)
+            with self.assertRaisesRegex(thalweg.RunFolderError, words):
+                thalweg.Run(self.folder).series
+        for damage in (b"", b"a: [1, 2\n", b"\xff\n", b"- 1\n"):
+            (self.folder / "case.yaml").write_bytes(damage)
+            with self.assertRaisesRegex(thalweg.RunFolderError, "case.yaml is damaged"):
+                thalweg.Run(self.folder).case
+
     def test_what_is_not_there_yet(self):
         run = thalweg.Run(self.folder)
         self.assertEqual(len(run.grains), 0)
