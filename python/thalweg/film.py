@@ -1,4 +1,6 @@
 """A film of the side view: figures of the frames of a run as a .gif, an .mp4 or a folder of numbered images."""
+import contextlib
+import itertools
 import shutil
 import subprocess
 from pathlib import Path
@@ -74,10 +76,11 @@ def write_mp4(pictures, path, rate):
     height, width = first.shape[:2]
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
                "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(path)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE) as ffmpeg:
-        ffmpeg.stdin.write(first.tobytes())
-        for picture in pictures:
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as ffmpeg, contextlib.suppress(BrokenPipeError):
+        # A broken pipe: ffmpeg has ended, and its exit code says so.
+        for picture in itertools.chain([first], pictures):
             ffmpeg.stdin.write(picture.tobytes())
+        ffmpeg.stdin.close()
     if ffmpeg.returncode:
         raise RunFolderError(f"{path}: ffmpeg ended with exit code {ffmpeg.returncode}.")
 

@@ -129,6 +129,10 @@ class Plot(unittest.TestCase):
         done = self.film(film, PATH=str(ffmpeg.parent))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(film.read_text(), "2 frames and 0 bytes")
+        ffmpeg.write_text("#!/bin/sh\nexit 7\n")   # before it has read a frame
+        done = self.film(film, PATH=str(ffmpeg.parent))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("ffmpeg ended with exit code 7", done.stderr)
 
     def test_draws_a_fluid_alone(self):
         case = self.folder / "case.yaml"
