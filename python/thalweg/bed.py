@@ -15,7 +15,7 @@ def surface_by_solid_fraction(z, fraction):
     z, fraction = np.asarray(z, float), np.asarray(fraction, float)
     if not np.nansum(fraction) > 0.0:
         raise RunFolderError("these profiles hold no grains; nothing has been measured yet.")
-    inside = z <= np.sum(fraction * z) / np.sum(fraction)
+    inside = z <= (1.0 + 1e-9) * np.sum(fraction * z) / np.sum(fraction)   # a single layer is its own centre of mass
     half = 0.5 * np.median(fraction[inside & (fraction > 0.0)])
     last = np.flatnonzero(fraction >= half)[-1]
     if last + 1 == len(z):

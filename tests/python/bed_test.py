@@ -113,6 +113,8 @@ class Layers(made_up.MadeUpFolder):
         # all layers with grains, those that fly included, the median is 0.3.
         fraction = [0.5, 0.6, 0.7, 0.6, 0.45, 0.15, 0.02, 0.02, 0.02, 0.02]
         self.assertAlmostEqual(bed.surface_by_solid_fraction(np.arange(10) + 0.5, fraction), 5.0, 12)
+        for alone in np.linspace(0.1, 0.6, 51):   # all grains in one layer, whatever the rounding: half-way to the next
+            self.assertAlmostEqual(bed.surface_by_solid_fraction([0.1, 0.3, 0.7], [alone, 0.0, 0.0]), 0.2, 12)
 
     def test_the_surface_by_solid_fraction(self):
         # Half of the top layer's volume is where its solid fraction has fallen to half in layers a diameter thick: at
