@@ -112,7 +112,7 @@ class LayerSums:
             found[name] = (sums / whole[:, None]).reshape(-1, 3, 3)
         if "fluid_stress" in found:
             found["rotation_stress"] = found["fluid_stress"][:, 0, 2] - found["fluid_stress"][:, 2, 0]
-        return Columns(found, UNITS)
+        return Columns(found, UNITS, {"velocity": list("xyz"), "flux": list("xyz")}, axes=("z",))
 
 
 def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None, bed_only=False):

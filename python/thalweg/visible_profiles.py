@@ -42,7 +42,8 @@ class VisibleSums:
         area = np.where(self.area > 0.0, self.area, np.nan)
         whole = self.frames * self.length * np.diff(self.edges)
         return Columns({"z": 0.5 * (self.edges[1:] + self.edges[:-1]), "areal_fraction": self.area / whole,
-                        "velocity": self.momentum / area[:, None], "temperature": 0.5 * self.deviation / area}, UNITS)
+                        "velocity": self.momentum / area[:, None], "temperature": 0.5 * self.deviation / area}, UNITS,
+                       {"velocity": list("xz")}, axes=("z",))
 
 
 def visible_profiles(run, start=-np.inf, stop=np.inf, thickness=None, most_frames=None):

@@ -9,6 +9,7 @@ import numpy as np
 
 import made_up_folder as made_up
 import thalweg
+from thalweg.layers import layer_profiles
 
 HAS_XARRAY = importlib.util.find_spec("xarray") is not None
 HAS_PANDAS = importlib.util.find_spec("pandas") is not None
@@ -136,6 +137,17 @@ class Labelled(made_up.MadeUpFolder):
         tracks = run.tracks.to_pandas()
         self.assertEqual(tracks.loc[(1.0, 17), "position_y"], 10.0)
         self.assertEqual(run.fluid[0].to_pandas().loc[(0.75, 0.25, 1.25), "velocity_y"], self.velocity[1, 0, 2, 1])
+
+    @unittest.skipUnless(HAS_PANDAS, "needs pandas")
+    def test_profiles_from_frames_are_a_row_for_each_layer(self):
+        run = thalweg.Run(self.folder)
+        profiles = layer_profiles(run, thickness=run.size[2] / 3)
+        frame = profiles.to_pandas()
+        np.testing.assert_allclose(frame.index, run.size[2] * np.array([1, 3, 5]) / 6)
+        self.assertEqual(frame.index.name, "z")
+        for name in ("solid_fraction", "velocity_x", "flux_z", "granular_temperature"):
+            self.assertIn(name, frame.columns)
+        np.testing.assert_array_equal(frame["flux_z"], profiles["flux"][:, 2])
 
 
 if __name__ == "__main__":
