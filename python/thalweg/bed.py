@@ -7,6 +7,7 @@ from thalweg.means import at_equal_intervals
 from thalweg.obstacles import floating, has_members, obstacles
 from thalweg.run import DRAGGING
 from thalweg.side_view import static_surface
+from thalweg.units import units_of
 
 
 def surface_by_solid_fraction(z, fraction):
@@ -61,7 +62,9 @@ def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):
     """Height (m) of the surface by static pixels, the mean over that many times between two (s)."""
     times = run.grains.between(start, stop).times
     if len(times) == 0:
-        raise RunFolderError(f"{run.folder}: there is no frame of the grains between {start:g} and {stop:g} s.")
+        raise RunFolderError(
+            f"{run.folder}: there is no frame of the grains between {start:g} and {stop:g} {units_of(run).named('s')}."
+        )
     chosen = np.unique(np.linspace(0, len(times) - 1, frames).astype(int))
     return float(np.mean([static_surface(run, times[k]).mean for k in chosen]))
 
@@ -176,5 +179,6 @@ def transport_rate(run, start=None, stop=np.inf, column="q_star"):
     rows = rows_between(run, start, stop)
     rows = rows[np.isfinite(run.series[column][rows])]
     if not len(rows):
-        raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} s on yet.")
+        second = units_of(run).named("s")
+        raise RunFolderError(f"{run.folder / 'series.csv'}: there is no measurement from {start:g} {second} on yet.")
     return run.series["time"][rows], run.series[column][rows]

@@ -79,17 +79,16 @@ def write_columns(path, columns, units):
 
 def window(run, start=None, stop=None):
     """Times (s) to average over, within those of series.csv: from the begin of the run's means of transport, or, where
-    it has none, the middle of the run, to its end."""
-    times = run.series["time"]
+    it has none, the middle of the time until then, to its end."""
+    times, second = run.series["time"], units_of(run).named("s")
     stop = float(times[-1]) if stop is None else stop
     if start is None:
-        start = (
-            run.averaged_from("transport_rate") if "transport_rate" in (run.case.get("analysis") or {}) else 0.5 * stop
-        )
+        has_means = "transport_rate" in (run.case.get("analysis") or {})
+        start = run.averaged_from("transport_rate") if has_means else 0.5 * min(stop, float(times[-1]))
     if not start < stop or start >= times[-1] or stop <= times[0]:
         raise RunFolderError(
-            f"{run.folder}: there is nothing to average from {start:g} to {stop:g} s: the run has rows from "
-            f"{times[0]:g} to {times[-1]:g} s. Give other times."
+            f"{run.folder}: there is nothing to average from {start:g} to {stop:g} {second}: the run has rows from "
+            f"{times[0]:g} to {times[-1]:g} {second}. Give other times."
         )
     return max(start, float(times[0])), min(stop, float(times[-1]))
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from thalweg.errors import RunFolderError
 from thalweg.obstacles import floating
+from thalweg.units import units_of
 
 COVERED = 0.6         # share of its perimeter behind others from which a grain is invisible
 NEAREST = 1.0 / 6.0   # diameters: of two projections closer than this only the front one is visible
@@ -67,15 +68,15 @@ def static_surface(run, time=None, duration=AT_REST):
     """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed
     the same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it. Grains that
     float over the bed are left out."""
-    times = run.grains.times
+    times, second = run.grains.times, units_of(run).named("s")
     if len(times) < 2 or times[-1] - times[0] < duration:
-        raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} s.")
+        raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} {second}.")
     middle = times[-1] if time is None else time
     start = min(max(middle - duration / 2, times[0]), times[-1] - duration)
     window = run.grains.between(start, start + duration)
     if len(window) < 3:
-        raise RunFolderError(f"{run.folder}: static pixels need three frames of the grains in {duration:g} s; "
-                             f"set output.grains.every to {duration / 5:g} s or less.")
+        raise RunFolderError(f"{run.folder}: static pixels need three frames of the grains in {duration:g} {second}; "
+                             f"set output.grains.every to {duration / 5:g} {second} or less.")
     return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0], lambda frame: floating(run, frame))
 
 

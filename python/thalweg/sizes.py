@@ -115,7 +115,7 @@ def sizes_of(run):
     """The size classes of a run. Raises RunFolderError where the means have not begun."""
     if "fractional_transport" in run.profiles and not measured(run):
         raise RunFolderError(f"{run.folder}: nothing has been measured by size class yet; the means begin at "
-                             f"{run.averaged_from('fractional_transport'):g} s.")
+                             f"{run.averaged_from('fractional_transport'):g} {units_of(run).named('s')}.")
     if "fractional_transport" not in run.profiles:
         raise RunFolderError(
             f"{run.folder / 'profiles.h5'}: it has no transport by size class (analysis.fractional_transport in the"

@@ -2,6 +2,7 @@
 import contextlib
 import io
 import json
+import re
 import unittest
 import unittest.mock
 
@@ -221,6 +222,12 @@ class Reports(made_up.MadeUpFolder):
         for start, stop in ((5.0, None), (2.0, 1.0), (-2.0, -1.0)):
             with self.assertRaisesRegex(thalweg.RunFolderError, "nothing to average"):
                 window(run, start, stop)
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("analysis: {transport_rate: {from: 1.0}}", "model_fluid: {units: grain}"))
+        run = thalweg.Run(self.folder)
+        self.assertEqual(window(run, stop=50.0), (2.0, 4.0))   # from the middle of the run on, which ends before that
+        with self.assertRaisesRegex(thalweg.RunFolderError, re.escape("from 5 to 4 sqrt(D/g'): the run has rows")):
+            window(run, 5.0)
 
     def test_a_series_without_time_is_said_in_a_sentence(self):
         (self.folder / "series.csv").write_text("step [1],q_star [1]\n0,1\n")
