@@ -76,9 +76,9 @@ def e_fold(height, velocity, before=""):
 def different_materials(run, column):
     """What two runs should share and do not, as text; empty if they are the same."""
     def values(of):
-        material, fluid = of.free_populations[0], of.section("fluid")
-        return {"slope": of.section("gravity").get("slope"), "diameter of the grains": material["diameter"],
-                "density of the grains": material["density"], "kinematic viscosity": fluid["kinematic_viscosity"]}
+        return {"slope": of.section("gravity").get("slope"), "diameter of the grains": of.diameter,
+                "density of the grains": of.density,
+                "kinematic viscosity": of.section("fluid")["kinematic_viscosity"]}
     one, other = values(run), values(column)
     return ", ".join(
         f"{name} {one[name]} and {other[name]}"

@@ -105,6 +105,13 @@ class TwoPhases(MadeUpFolder):
             self.assertGreater((self.folder / "figure.png").stat().st_size, 20000)
         self.assertEqual(two_phases.different_materials(run, column), "diameter of the grains 0.00495 and 0.005")
 
+    def test_a_mixture_is_compared_by_its_reference_grain(self):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("diameter: 4.95e-3", "diameter: {sizes: [4e-3, 6e-3], fractions: [0.6, 0.4]}"))
+        (self.folder / "series.csv").write_text("time [s],reference_diameter [m],reference_density [kg/m^3]\n0,6e-3,2550\n")
+        self.assertEqual(two_phases.different_materials(Run(self.folder), self.made_up_column()),
+                         "diameter of the grains 0.006 and 0.005")
+
     def test_a_run_without_stresses_is_refused(self):
         (self.folder / "profiles.h5").unlink()
         with self.assertRaisesRegex(RunFolderError, "stress_balance"):
