@@ -59,14 +59,18 @@ def more_than_the_bed(run):
 
 
 def static_bed_height(run, start=-np.inf, stop=np.inf, frames=10):
-    """Height (m) of the surface by static pixels, the mean over that many times between two (s)."""
+    """Height (m) of the surface by static pixels, the mean over that many times between two (s) at which there are
+    any."""
     times = run.grains.between(start, stop).times
     if len(times) == 0:
         raise RunFolderError(
             f"{run.folder}: there is no frame of the grains between {start:g} and {stop:g} {units_of(run).named('s')}."
         )
     chosen = np.unique(np.linspace(0, len(times) - 1, frames).astype(int))
-    return float(np.mean([static_surface(run, times[k]).mean for k in chosen]))
+    heights = np.array([static_surface(run, times[k]).mean for k in chosen])
+    if np.isnan(heights).all():
+        raise RunFolderError(f"{run.folder}: no grain is at rest long enough for a static pixel.")
+    return float(np.nanmean(heights))
 
 
 def hydraulic_radius(depth, width=None, side_walls=2):

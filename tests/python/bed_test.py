@@ -321,6 +321,17 @@ class Layers(made_up.MadeUpFolder):
         self.assertLess(height, 8.0)
         self.assertGreater(height, 8.0 - 0.5 * (1 - np.pi / 4) - 2 / 25)
 
+    def test_a_surface_where_nothing_rests(self):
+        # Layers at rest end 8 d high, until all grains are swept away, by three diameters between frames.
+        still = self.bed_of_layers(8)[:-1]
+        swept = [(still + [3 * n * D, 0, 0]) % [SIZE[0], 1, 1] for n in range(11)]
+        self.write_frames(np.arange(11) * 0.1, swept)
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no grain is at rest"):
+            bed.static_bed_height(thalweg.Run(self.folder), frames=3)
+        self.write_frames(np.arange(22) * 0.1, [still] * 11 + swept)
+        height = bed.static_bed_height(thalweg.Run(self.folder), frames=3) / D
+        self.assertTrue(8.0 - 0.5 * (1 - np.pi / 4) - 2 / 25 < height < 8.0)
+
     def test_static_pixels_need_frames(self):
         self.write_frames((0.0, 0.3), [self.bed_of_layers(2)] * 2)
         with self.assertRaisesRegex(thalweg.RunFolderError, "over 0.5 s"):
