@@ -17,13 +17,17 @@ def read_rows(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-def merged_rows(path, rows):
+def merged_rows(path, rows, needed=("run",)):
     """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back.
-    None: there is no table, and rows are all there is. What is in it outlives the folders of the runs."""
+    None: there is no table, and rows are all there is. What is in it outlives the folders of the runs. needed: headings
+    without which it is another table."""
     if path is None:
         return rows
     path = Path(path)
     kept = read_rows(path) if path.exists() else []
+    missing = [heading for heading in needed if kept and heading not in kept[0]]
+    if missing:
+        raise RunFolderError(f"{path}: it has no column {missing[0]}, so that it is another table; give a new name.")
     merged = []
     for name in dict.fromkeys(row["run"] for row in kept + rows):
         of_this = [row for row in rows if row["run"] == name]
@@ -31,7 +35,8 @@ def merged_rows(path, rows):
     if not merged:
         raise RunFolderError(f"{path}: there is no run in this table and none to put into it; give run folders.")
     with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0] if rows else merged[0]), lineterminator="\n")
+        headings = dict.fromkeys(heading for row in rows + merged for heading in row)
+        writer = csv.DictWriter(file, headings, lineterminator="\n")
         writer.writeheader()
         writer.writerows(merged)
     return merged

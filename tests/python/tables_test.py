@@ -28,6 +28,22 @@ class MergedRows(unittest.TestCase):
                 merged_rows(path, [])
             self.assertFalse(path.exists())
 
+    def test_a_table_of_something_else_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "series.csv"
+            for text, needed in (("time [s]\n0\n", ("run",)), ("run,q\na,1\n", ("run", "error"))):
+                path.write_text(text, encoding="utf-8")
+                with self.assertRaisesRegex(RunFolderError, f"it has no column {needed[-1]}"):
+                    merged_rows(path, [{"run": "b", "q": "1", "error": "2"}], needed)
+                self.assertEqual(path.read_text(encoding="utf-8"), text)
+
+    def test_columns_of_one_run_alone_are_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            path.write_text("run,remark\na,good\n", encoding="utf-8")
+            merged_rows(path, [{"run": "b", "q": "1"}])
+            self.assertEqual(read_rows(path), [{"run": "a", "q": "", "remark": "good"}, {"run": "b", "q": "1", "remark": ""}])
+
     def test_without_a_table_nothing_is_kept(self):
         self.assertEqual(merged_rows(None, [{"run": "a"}]), [{"run": "a"}])
 

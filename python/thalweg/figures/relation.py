@@ -17,6 +17,7 @@ from thalweg.tables import merged_rows
 from thalweg.transport import transport
 
 SMALLEST = 1e-3   # q* that is drawn; what is below stands on the axis
+DRAWN = "run", "Shields number [1]", "q_star [1]", "error [1]", "steady"   # headings of the table that the figure needs
 VERDICTS = {True: "yes", False: "no", None: "too short"}
 
 
@@ -132,4 +133,5 @@ def draw(folders, start, stop, surface, table):
     found = [measure(folder, start, stop, surface) for folder in folders]
     if found:
         print_table(folders, found)
-    return figure_of(merged_rows(table, [row_of(folder, *one) for folder, one in zip(folders, found)]))
+    rows = [row_of(folder, *one) for folder, one in zip(folders, found)]
+    return figure_of(merged_rows(table, rows, DRAWN))
