@@ -7,6 +7,7 @@ from thalweg.layers import disk_below, parts_in_layers
 from thalweg.side_view import static_surface, visible_grains
 
 UNITS = {"z": "m", "areal_fraction": "1", "velocity": "m/s", "temperature": "m^2/s^2"}
+ROUND_OFF = 1e-12   # of a velocity, by which that of a grain alone in a layer may differ from their mean
 
 
 class VisibleSums:
@@ -33,7 +34,9 @@ class VisibleSums:
         self.area += area
         self.momentum += momentum
         mean = momentum / np.where(area > 0.0, area, 1.0)[:, None]
-        self.deviation += np.sum(part * np.sum((velocity[None] - mean[:, None])**2, axis=2), axis=1)
+        apart = velocity[None] - mean[:, None]
+        apart[np.abs(apart) < ROUND_OFF * np.abs(velocity)] = 0.0
+        self.deviation += np.sum(part * np.sum(apart**2, axis=2), axis=1)
 
     def profiles(self):
         """Columns over z: areal fraction, velocity (x, z) and temperature, NaN where no grain was seen."""

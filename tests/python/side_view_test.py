@@ -109,6 +109,14 @@ class VisibleProfiles(unittest.TestCase):
         np.testing.assert_allclose(found["temperature"][1], 0.5, rtol=1e-12)  # half of the variance 1 of two components
         self.assertTrue(np.isnan(found["temperature"][0]))
 
+    def test_a_grain_alone_has_no_temperature(self):
+        for speed in np.linspace(0.1, 0.5, 41):
+            sums = VisibleSums(np.array([0.0, 0.7, 2.0]), 10.0)
+            frame = SimpleNamespace(position=np.array([[2.0, 1.0, 0.9]]), radius=np.full(1, 0.5),
+                                    velocity=np.array([[speed, 0.0, -0.3 * speed]]))
+            sums.add(frame, Surface(np.arange(10.0), np.zeros(10)))
+            np.testing.assert_array_equal(sums.profiles()["temperature"], 0.0)
+
 
 if __name__ == "__main__":
     unittest.main()
