@@ -19,6 +19,7 @@ def figure_of(run):
     left.set(xlabel="mean velocity along x [m/s]", ylabel="z [mm]")
     for column, label in ((0, "$u'u'$"), (1, "$v'v'$"), (2, "$w'w'$"), (4, "$u'w'$")):
         right.plot(stress[:, column], z, label=label)
+    right.xaxis.set_major_locator(plt.MaxNLocator(5))   # whose labels have five digits
     right.set(xlabel=r"Reynolds stress [m$^2$/s$^2$]")
     right.legend(frameon=False, fontsize=9)
     for axes in (left, right):

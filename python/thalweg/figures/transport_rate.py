@@ -23,9 +23,10 @@ def mean_transport(run):
         return None
 
 
-def draw_rates(axes, time, rate, found, second):
+def draw_rates(axes, time, rate, found, units):
     """The measured rates and their running mean over a tenth of the time; behind them the averaging window, with the
-    mean in a band of one standard error on either side. second: the unit of the times."""
+    mean in a band of one standard error on either side."""
+    second = units.named("s")
     axes.plot(time, rate, color=RATE_COLOUR, linewidth=0.9, zorder=3, label="measured")
     if len(time) > 100:
         window = 0.1 * (time[-1] - time[0])
@@ -40,7 +41,7 @@ def draw_rates(axes, time, rate, found, second):
             )
         known = f" \u00b1 {error:.2g}" if np.isfinite(error) else ""
         axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
-                    label=f"mean from {found.start:.4g} to {found.stop:.4g} {second}: {mean:.4g}{known}{found.unit}")
+                    label=f"mean from {found.start:.4g} to {found.stop:.4g} {second}: {mean:.4g}{known}{units.mathematical(found.unit)}")
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -63,10 +64,10 @@ def figure_of(run):
     """All measured q* against time with their running mean, and the mean with its error that run.log has over its time;
     where a start carries so much that this hardly shows, once more below, enlarged. Of a continuum q* and its last
     value."""
-    series = run.series
+    series, units = run.series, units_of(run)
     name, label = "q_star", r"$q^* = q_s\,/\sqrt{(s-1)\,g\,d^3}$"
     if name not in series:
-        name, label = "q_s", f"$q_s$ [{units_of(run).mathematical('m^2/s')}]"
+        name, label = "q_s", f"$q_s$ [{units.mathematical('m^2/s')}]"
     if name not in series:
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no column q_star "
                                      "(analysis.transport_rate in the case).")
@@ -74,7 +75,7 @@ def figure_of(run):
     time, rate = series["time"][known], series[name][known]
     if not len(time):
         raise RunFolderError(f"{run.folder / 'series.csv'}: it has no measurement of the transport rate yet.")
-    found, second = mean_transport(run), units_of(run).named("s")
+    found = mean_transport(run)
     inside = rate[(time >= found.start) & (time <= found.stop)] if found is not None else rate
     enlarged = np.ptp(padded(inside)) < LEAST_SHARE * np.ptp(padded(rate))
     figure, panels = plt.subplots(2 if enlarged else 1, 1, figsize=(6.4, 5.4 if enlarged else 3.6), squeeze=False,
@@ -83,14 +84,14 @@ def figure_of(run):
         if run.system == "continuum":
             draw_column(axes, time, rate)
         else:
-            draw_rates(axes, time, rate, found, second)
+            draw_rates(axes, time, rate, found, units)
         axes.set(ylabel=label, ylim=padded(shown))
     end = time[-1] if time[-1] > time[0] else time[0] + 1.0
     panels[0, 0].set(xlim=(time[0], end))
     if enlarged:
         panels[1, 0].set(xlim=(found.start, max(found.stop, found.start + 1e-3 * end)))
         panels[1, 0].set_title("the averaging window, enlarged", fontsize=10)
-    panels[-1, 0].set_xlabel(f"time $t$ [{second}]")
+    panels[-1, 0].set_xlabel(f"time $t$ [{units.named('s')}]")
     panels[0, 0].legend(
         frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
         handlelength=1.6,
