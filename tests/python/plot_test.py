@@ -282,6 +282,19 @@ class Plot(unittest.TestCase):
                 low, high = axes[1].get_ylim()
                 self.assertTrue(low <= rate[100:].min() and rate[100:].max() < high < 0.2)
 
+    def test_the_legend_of_the_rates_is_not_clipped(self):
+        for units, column in (("", "q_star [1]"), ("", "q_s [m^2/s]"), ("model_fluid: {units: grain}\n", "q_s [m^2/s]")):
+            (self.folder / "case.yaml").write_text(f"name: rates\n{units}analysis: {{transport_rate: {{from: 30}}}}\n")
+            rows = "".join(f"{n},{1.2345e-5 * (1 + 0.1 * (-1) ** n):g}\n" for n in range(300))
+            (self.folder / "series.csv").write_text(f"time [s],{column}\n{rows}")
+            figure = transport_rate.figure_of(thalweg.Run(self.folder))
+            self.addCleanup(matplotlib.pyplot.close, figure)
+            figure.canvas.draw()
+            legend = figure.axes[0].get_legend().get_window_extent()
+            self.assertGreaterEqual(legend.x0, 0.0)
+            self.assertLessEqual(legend.x1, figure.bbox.width)
+            self.assertGreater(figure.axes[0].get_window_extent().width, 0.7 * figure.bbox.width)
+
     def test_of_a_continuum_the_last_rate_counts(self):
         (self.folder / "case.yaml").write_text("name: column\nsystem: continuum\n")
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n5,0.06\n10,0.08\n")

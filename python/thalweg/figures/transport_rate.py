@@ -9,6 +9,7 @@ from thalweg.means import running_mean
 from thalweg.units import units_of
 
 RATE_COLOUR, SMOOTH_COLOUR, MEAN_COLOUR = "#9bbfd6", "#14496e", "#c0392b"
+LETTERS_A_LINE = 72   # of the legend; more of them stand one below the other
 LEAST_SHARE = 0.35   # of the axis that the rates in the averaging window fill; below, a second panel enlarges them
 
 
@@ -92,9 +93,10 @@ def figure_of(run):
         panels[1, 0].set(xlim=(found.start, max(found.stop, found.start + 1e-3 * end)))
         panels[1, 0].set_title("the averaging window, enlarged", fontsize=10)
     panels[-1, 0].set_xlabel(f"time $t$ [{units.named('s')}]")
+    letters = sum(len(label) for label in panels[0, 0].get_legend_handles_labels()[1])
     panels[0, 0].legend(
-        frameon=False, fontsize=9, ncol=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2,
-        handlelength=1.6,
+        frameon=False, fontsize=9, ncol=3 if letters <= LETTERS_A_LINE else 1, loc="lower center",
+        bbox_to_anchor=(0.5, 1.0), columnspacing=1.2, handlelength=1.6,
     )
     figure.suptitle(run.name, fontsize=11)
     figure.align_ylabels()
