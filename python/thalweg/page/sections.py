@@ -162,14 +162,14 @@ def reach_section(run):
     )
     found, parts = (run.summary or {}).get("reach") or {}, []
     if found:
-        parts.append(
-            html.paragraph(
-                f"{number(found['arrived_grains'])} grains came in and {number(found['left_grains'])} left; the mean"
-                f" residence time of those that did both is {number(found['residence_time_mean'], 3)}"
-                f" {units_of(run).named('s')}. The balance of the bins is out by {number(found['balance_residual'])}"
-                " grains."
-            )
-        )
+        text = f"The balance of the bins is out by {number(found['balance_residual'])} grains."
+        if found["arrived_grains"] or found["left_grains"]:
+            stay = found["residence_time_mean"]
+            came = f"{number(found['arrived_grains'])} grains came in and {number(found['left_grains'])} left"
+            if stay is not None:
+                came += f"; the mean residence time of those that did both is {number(stay, 3)} {units_of(run).named('s')}"
+            text = f"{came}. {text}"
+        parts.append(html.paragraph(text))
     return html.section("Along the reach", attempt(lambda: reach.figure_of(run), caption), *parts)
 
 
