@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thalweg.bed import rows_between
 from thalweg.errors import RunFolderError
 from thalweg.means import mean_with_error
 from thalweg.water import VON_KARMAN
@@ -45,8 +46,7 @@ def rough_flow(run, start):
     """From the momentum of the water from a time (s) on; that below the virtual wall, 1 % of it, counts to the flow
     above."""
     depth = run.size[2] - VIRTUAL_WALL * run.diameter
-    counted = run.series["time"] >= start
-    momentum = mean_with_error(run.series["fluid_momentum_x"][counted])
+    momentum = mean_with_error(run.series["fluid_momentum_x"][rows_between(run, start, np.inf)])
     u_star, density = friction_velocity(run), float(run.case["fluid"]["density"])
     in_u_star = 1.0 / (density * run.size[0] * run.size[1] * depth * u_star)
     return RoughFlow(

@@ -44,6 +44,17 @@ class RoughBed(MadeUpFolder):
         self.assertAlmostEqual(flow.roughness, ROUGHNESS, places=6)
         self.assertAlmostEqual(von_karman_number(Run(self.folder)), VON_KARMAN, places=6)
 
+    def test_rows_at_shorter_intervals_do_not_weigh_more(self):
+        # Twice the momentum for the last second of twenty, in rows ten times as frequent since a restart.
+        path = self.folder / "series.csv"
+        head, *rows = path.read_text().splitlines()[:291]
+        momentum = float(rows[-1].partition(",")[2])
+        rows += [f"{29 + 0.01 * n:.2f},{2.0 * momentum:.9g}" for n in range(100)]
+        path.write_text("\n".join([head, *rows, ""]))
+        faster = rough_flow(Run(self.folder), start=10.0).bulk_velocity
+        path.write_text("\n".join([head, *rows[:290], ""]))
+        self.assertAlmostEqual(faster / rough_flow(Run(self.folder), start=10.0).bulk_velocity, 1.05, delta=0.005)
+
     def test_roughness_and_mean_belong_together(self):
         # By hand: k_s = 30 h exp(-1 - 0.41 U), h = 4.7, U = 12.
         self.assertAlmostEqual(roughness_of(12.0, 4.7), 141.0 * np.exp(-5.92), places=9)
