@@ -32,6 +32,12 @@ def has_members(run, frame):
     return bool(np.any(clump >= 0)) if clump is not None else run is not None and run.has_clumps
 
 
+def velocity_is_free(frame):
+    """Which grains of a frame move freely; all where its fields leave out which are held."""
+    held = frame.arrays.get("held")
+    return np.ones(len(frame), bool) if held is None else held.astype(int) & 1 == 0
+
+
 def fixed_by_position(run, frame):
     """Which grains of a frame the case fixes at positions."""
     found = np.zeros(len(frame), bool)
@@ -57,6 +63,7 @@ def obstacles(run, frame):
         stands[grain] = np.any(away < frame.radius[others] + frame.radius[grain] - 2.0 * MERGED * smaller)
     free = np.ones(len(frame), bool)
     free[fixed] = False
+    free &= velocity_is_free(frame)
     if free.any():
         stands[fixed] |= frame.radius[fixed] >= AS_LARGE_AGAIN * frame.radius[free].max()
     return stands
@@ -70,8 +77,7 @@ def floating(run, frame):
         return none
     if has_members(run, frame):
         return none
-    free = np.asarray(frame.arrays.get("held", 0)).astype(int) & 1 == 0
-    afloat = free & (frame.density <= (1.0 + NEUTRAL) * float(fluid["density"]))
+    afloat = velocity_is_free(frame) & (frame.density <= (1.0 + NEUTRAL) * float(fluid["density"]))
     return afloat if afloat.any() and not (afloat | obstacles(run, frame)).all() else none
 
 

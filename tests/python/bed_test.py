@@ -207,6 +207,13 @@ class Layers(made_up.MadeUpFolder):
             "grains: [{", f"grains: [{{fixed: true, placement: {{positions: {fixed.tolist()}}}}}, {{"))
         run = thalweg.Run(self.folder)
         np.testing.assert_array_equal(np.flatnonzero(obstacles(run, run.grains[0])), (0, 2, 3))
+        # A floor of larger grains that are held, at no positions of the case, is none of the free ones.
+        held = np.array(6 * [3] + [0, 3])
+        radius[-1] = 0.8 * D
+        for which, found in ({"held": [held]}, (0, 2, 3)), ({}, (2, 3)):
+            self.write_frames((0.0,), [places], radius=[radius], **which)
+            run = thalweg.Run(self.folder)
+            np.testing.assert_array_equal(np.flatnonzero(obstacles(run, run.grains[0])), found)
 
     def test_grains_that_float_are_no_bed(self):
         # A raft of a layer below the lid, as dense as the bed.
