@@ -46,14 +46,21 @@ def fluid_slice(frame):
     return speed, (frame.corner[0], upper[0], frame.corner[2], upper[2]), holder < WATER
 
 
+def shifted(array, step, axis):
+    """An array moved by one place up or down an axis; nought where nothing comes in."""
+    moved = np.roll(array, step, axis)
+    moved[(slice(None),) * axis + (0 if step > 0 else -1,)] = 0
+    return moved
+
+
 def without_holes(layer):
     """Masked cells filled from their neighbours, ring by ring: grains on top hide them but for their corners."""
     values, known = np.where(layer.mask, 0.0, layer.data), ~np.ma.getmaskarray(layer)
     while known.any() and not known.all():
         total, count = np.zeros_like(values), np.zeros(values.shape, int)
         for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
-            total += np.roll(np.where(known, values, 0.0), step, axis)
-            count += np.roll(known, step, axis)
+            total += shifted(np.where(known, values, 0.0), step, axis)
+            count += shifted(known, step, axis)
         ring = ~known & (count > 0)
         values[ring] = total[ring] / count[ring]
         known |= ring

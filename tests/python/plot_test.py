@@ -187,6 +187,11 @@ class Plot(unittest.TestCase):
         np.testing.assert_allclose(filled, [[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, atol=1e-15)
         layer.mask[:] = True
         self.assertEqual(drawing.without_holes(layer).shape, (5, 5))
+        # The lowest layer of cells is not beside the highest, nor the first column beside the last.
+        layer = np.ma.array(np.ones((5, 5)), mask=False)
+        layer[-1], layer[:, -1] = 9.0, 5.0
+        layer[0, :2] = layer[1, 0] = np.ma.masked
+        np.testing.assert_array_equal(drawing.without_holes(layer)[:2, :2], 1.0)
 
     def test_figures_of_a_case_in_grain_units(self):
         (self.folder / "fluid.pvd").unlink()
