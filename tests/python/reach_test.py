@@ -149,9 +149,9 @@ class ReachTest(made_up.MadeUpFolder):
 
     def test_page(self):
         self.write_means()
-        found = {"arrived_grains": 12, "left_grains": 10, "residence_time_mean": 0.75, "balance_residual": 0}
+        found = {"arrived_grains": 12345, "left_grains": 10, "residence_time_mean": 0.75, "balance_residual": 0}
         (self.folder / "summary.json").write_text(json.dumps({"reach": found}))
-        self.assertIn("12 grains came in and 10 left; the mean residence time of those that did both is 0.75 s. The balance",
+        self.assertIn("12345 grains came in and 10 left; the mean residence time of those that did both is 0.75 s. The balance",
                       reach_section(self.run_()))
         found |= {"arrived_grains": 0, "left_grains": 0, "residence_time_mean": None}   # a periodic reach
         (self.folder / "summary.json").write_text(json.dumps({"reach": found}))
