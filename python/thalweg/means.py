@@ -6,6 +6,7 @@ import numpy as np
 
 MOST_BATCHES = 1024
 LEAST_SHARE = 0.05        # of the time, with intervals that count in at_equal_intervals()
+ALIKE = 0.75              # of an interval, from which another one counts as long as it
 FEWEST_INDEPENDENT = 20   # values, below which an error is an underestimate and nothing is said of drifts
 BOUND = 0.5               # part of the mean by which a steady series may change from its begin to its end
 ROUND_OFF = 1e-12         # of the largest batch, below which there is no scatter
@@ -62,10 +63,13 @@ def at_equal_intervals(time):
     steps = np.diff(time)
     if len(steps) < 2:
         return np.ones(len(time), bool)
-    # The longest that more than a small share of the time goes in: a single gap does not count.
-    of_time = np.sort(steps)[::-1]
+    # The longest that more than a small share of the time goes in. A gap does not count: none beside it is as long.
+    beside = np.maximum(np.append(steps[1:], 0.0), np.append(0.0, steps[:-1]))
+    of_time = np.sort(steps[beside >= ALIKE * steps])[::-1]
+    if not len(of_time):
+        return np.ones(len(time), bool)
     longest = of_time[np.searchsorted(np.cumsum(of_time), LEAST_SHARE * of_time.sum())]
-    shorter = steps < 0.75 * longest
+    shorter = steps < ALIKE * longest
     if steps[shorter].sum() <= longest:   # the last row of a run comes when it ends
         return np.ones(len(time), bool)
     wanted = time[0] + longest * np.arange(int((time[-1] - time[0]) / longest + 1e-6) + 1)

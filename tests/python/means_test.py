@@ -43,6 +43,9 @@ class EqualIntervals(unittest.TestCase):
         time = np.append(np.arange(100) * 0.01, 0.993)
         self.assertTrue(at_equal_intervals(time).all())
         self.assertTrue(at_equal_intervals(np.delete(np.arange(1000) * 0.01, slice(400, 420))).all())
+        # However long the gap is: rows of series.csv that are missing before a restart.
+        for gap in (slice(100, 900), slice(1, 999)):
+            self.assertTrue(at_equal_intervals(np.delete(np.arange(1000) * 0.01, gap)).all())
         for short in ([], [1.0], [1.0, 2.0]):
             self.assertEqual(at_equal_intervals(short).sum(), len(short))
 
