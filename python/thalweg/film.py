@@ -65,10 +65,13 @@ def images(run, frames, width):
         yield image[:image.shape[0] // 2 * 2, :image.shape[1] // 2 * 2]
 
 
-def write_gif(pictures, path, rate):
+def write_gif(pictures, path, rate, count):
+    """count: of the pictures. A .gif has whole hundredths of a second for each: they vary, so that the film is as long
+    as it should be."""
     from PIL import Image
+    durations = np.diff(np.round(np.arange(count + 1) * 100.0 / rate).astype(int)) * 10   # ms
     quantized = (Image.fromarray(picture).quantize(128) for picture in pictures)
-    next(quantized).save(path, save_all=True, append_images=quantized, duration=1000.0 / rate, loop=0)
+    next(quantized).save(path, save_all=True, append_images=quantized, duration=durations.tolist(), loop=0)
 
 
 def write_mp4(pictures, path, rate):
@@ -102,7 +105,7 @@ def write_film(run, frames, path, rate=20.0, width=900):
     if path.suffix == ".mp4":
         write_mp4(pictures, path, rate)
     elif path.suffix == ".gif":
-        write_gif(pictures, path, rate)
+        write_gif(pictures, path, rate, len(frames))
     elif path.suffix:
         raise RunFolderError(f"{path}: give a .gif, an .mp4 or a folder.")
     else:

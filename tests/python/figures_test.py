@@ -9,7 +9,7 @@ import unittest
 import matplotlib.image
 import matplotlib.pyplot
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageSequence
 
 import made_up_folder as made_up
 from made_up_folder import ROOT
@@ -109,6 +109,10 @@ class Figures(made_up.MadeUpFolder):
             self.assertEqual(done.returncode, 0, done.stderr)
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual(film.n_frames, 4)   # at 0, 0.2, 0.4, 0.6 s
+        # Eight images, 40 a second, are 0.2 s, though each has whole hundredths.
+        self.assertEqual(self.plot("film", "--width", "300", "--rate", "40").returncode, 0)
+        with Image.open(self.folder / "film.gif") as film:
+            self.assertEqual(sum(picture.info["duration"] for picture in ImageSequence.Iterator(film)), 200)
         self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)
         self.refused(self.plot("film", "--from", "5"), "no frame of the grains in this time")
         for option, value, words in (("--rate", "0", "above 0"), ("--rate", "60", "at most 50 images"),
