@@ -27,9 +27,11 @@ def surface_by_solid_fraction(z, fraction):
 
 def has_profiles_of(run, start, stop):
     """Whether the profiles that the run gathered are means over the time from `start` to `stop` (s)."""
-    interval = 2.0 * float(np.max(np.diff(run.series["time"]), initial=0.0))
+    time = run.series["time"]
+    steps = np.diff(time[at_equal_intervals(time)])
+    interval = 2.0 * float(np.median(steps)) if len(steps) else 0.0   # a gap in the rows is none
     return ("grain_profiles" in run.profiles and abs(run.averaged_from("grain_profiles") - start) <= interval and
-            stop >= run.series["time"][-1] - interval)
+            stop >= time[-1] - interval)
 
 
 def bed_height(run, start=-np.inf, stop=np.inf):

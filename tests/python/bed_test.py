@@ -313,6 +313,12 @@ class Layers(made_up.MadeUpFolder):
         self.assertTrue(bed.has_profiles_of(thalweg.Run(self.folder), 5.0, 10.0))
         self.assertFalse(bed.has_profiles_of(run, 1.0, 5.0))
         self.assertFalse(bed.has_profiles_of(run, 4.0, 10.0))
+        # Rows that are missing make no difference to that.
+        rows = [t / 10 for t in range(101) if not 20 < t < 60]
+        (self.folder / "series.csv").write_text("time [s],q_star [1]\n" + "".join(f"{t},0.1\n" for t in rows))
+        run = thalweg.Run(self.folder)
+        self.assertTrue(bed.has_profiles_of(run, 5.0, 10.0))
+        self.assertFalse(bed.has_profiles_of(run, 1.0, 10.0))
 
     def test_the_surface_by_static_pixels(self):
         # Layers at rest end 8 d high; on them a layer that slides by a diameter between frames, and one grain that
