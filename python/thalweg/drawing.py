@@ -113,6 +113,12 @@ def render_spheres(position, radius, speed, extent, scale, norm):
     return np.dstack([rgb, alpha])
 
 
+def name_above(figure, name):
+    """Writes a name above a figure, in as many lines as it takes; a dollar is one."""
+    letters = int((figure.get_figwidth() - 0.2) / LETTER)
+    figure.suptitle("\n".join(textwrap.wrap(name, letters)), fontsize=TITLE_SIZE, parse_math=False)
+
+
 def title_of(run, time):
     """What a picture shows, and when, which stays on one line."""
     when = f"t = {time:.4g} {units_of(run).named('s')}"
@@ -130,7 +136,8 @@ def side_view_axes(run, time, bars):
     total = np.array([left + width + right, below + height + above])
     figure = plt.figure(figsize=total)
     title = "\n".join(textwrap.wrap(title_of(run, time), letters))
-    figure.text(0.5, 1.0 - 0.12 / total[1], title, ha="center", va="top", fontsize=TITLE_SIZE)
+    figure.text(0.5, 1.0 - 0.12 / total[1], title, ha="center", va="top", fontsize=TITLE_SIZE,
+                parse_math=False)
 
     def place(x, z, w, h):
         return figure.add_axes([x / total[0], z / total[1], w / total[0], h / total[1]])

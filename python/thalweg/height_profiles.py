@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg.bed import bed_height, is_obstructed, more_than_the_bed, surface_by_solid_fraction
+from thalweg.drawing import name_above
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
 from thalweg.units import units_of
@@ -182,5 +183,5 @@ def figure_of(run):
         axes.grid(**GRID)
     right.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     units = units_of(run)
-    figure.suptitle(f"{run.name}, d = {units.per_length * run.diameter:.3g} {units.length}", fontsize=11)
+    name_above(figure, f"{run.name}, d = {units.per_length * run.diameter:.3g} {units.length}")
     return figure

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg.bed import surface_by_solid_fraction
+from thalweg.drawing import name_above
 from thalweg.errors import RunFolderError
 from thalweg.height_profiles import GRID, component
 from thalweg.literature import beetstra_drag
@@ -197,5 +198,5 @@ def comparison_figure(run, column=None):
     for panel in axes.flat:
         panel.grid(**GRID)
     lines = "resolved" + (f"; dashed: {column.name}, two-phase continuum" if column is not None else "")
-    figure.suptitle(f"{run.name}, d = {1e3 * run.diameter:.3g} mm (lines: {lines})", fontsize=11)
+    name_above(figure, f"{run.name}, d = {1e3 * run.diameter:.3g} mm (lines: {lines})")
     return figure

@@ -300,6 +300,17 @@ class Plot(unittest.TestCase):
             self.assertLessEqual(legend.x1, figure.bbox.width)
             self.assertGreater(figure.axes[0].get_window_extent().width, 0.7 * figure.bbox.width)
 
+    def test_a_long_name_is_not_clipped(self):
+        name = "Wide bed, cost $5_ and $6^, second series after the repair of the pump, " * 2   # dollars begin no formula
+        (self.folder / "case.yaml").write_text(f"name: '{name}'\nsystem: resolved\n")
+        figure = transport_rate.figure_of(thalweg.Run(self.folder))
+        self.addCleanup(matplotlib.pyplot.close, figure)
+        figure.canvas.draw()
+        title = figure._suptitle
+        self.assertEqual(title.get_text().split(), name.split())
+        extent = title.get_window_extent()
+        self.assertTrue(0.0 <= extent.x0 < extent.x1 <= figure.bbox.width)
+
     def test_of_a_continuum_the_last_rate_counts(self):
         (self.folder / "case.yaml").write_text("name: column\nsystem: continuum\n")
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n5,0.06\n10,0.08\n")

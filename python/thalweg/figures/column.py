@@ -1,6 +1,7 @@
 """The column of a continuum over the height."""
 import matplotlib.pyplot as plt
 
+from thalweg.drawing import name_above
 from thalweg.height_profiles import GRID
 
 
@@ -31,5 +32,5 @@ def figure_of(run):
         axes.grid(**GRID)
     for axes in (middle, right):
         axes.legend(fontsize=8, frameon=False)
-    figure.suptitle(run.name, fontsize=11)
+    name_above(figure, run.name)
     return figure

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from thalweg.drawing import name_above
 from thalweg.height_profiles import GRID
 
 
@@ -24,5 +25,5 @@ def figure_of(run):
     right.legend(frameon=False, fontsize=9)
     for axes in (left, right):
         axes.grid(**GRID)
-    figure.suptitle(run.name, fontsize=11)
+    name_above(figure, run.name)
     return figure

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from thalweg.drawing import name_above
 from thalweg.errors import RunFolderError
 from thalweg.height_profiles import GRID
 from thalweg.records import parts_of
@@ -87,5 +88,5 @@ def figure_of(run):
             fontsize=9, loc="left",
         )
     panels[-1].set(xlabel=f"x [{units.length}]", xlim=(0.0, units.per_length * run.size[0]))
-    figure.suptitle(run.name, fontsize=11)
+    name_above(figure, run.name)
     return figure

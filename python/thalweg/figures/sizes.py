@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from thalweg.drawing import name_above
 from thalweg.height_profiles import GRID
 from thalweg.sizes import sizes_of
 from thalweg.units import units_of
@@ -63,5 +64,5 @@ def figure_of(run):
         axes.tick_params(axis="x", which="minor", labelsize=7)
         axes.grid(**GRID)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.suptitle(run.name, fontsize=11)
+    name_above(figure, run.name)
     return figure

@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from thalweg import transport
+from thalweg.drawing import name_above
 from thalweg.errors import RunFolderError
 from thalweg.means import running_mean
 from thalweg.units import units_of
@@ -41,8 +42,11 @@ def draw_rates(axes, time, rate, found, units):
                 (found.start, found.stop), mean - error, mean + error, color=MEAN_COLOUR, alpha=0.2, lw=0, zorder=1
             )
         known = f" \u00b1 {error:.2g}" if np.isfinite(error) else ""
-        axes.hlines(mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
-                    label=f"mean from {found.start:.4g} to {found.stop:.4g} {second}: {mean:.4g}{known}{units.mathematical(found.unit)}")
+        axes.hlines(
+            mean, found.start, found.stop, color=MEAN_COLOUR, linewidth=1.4, zorder=5,
+            label=f"mean from {found.start:.4g} to {found.stop:.4g} {second}: {mean:.4g}{known}"
+            f"{units.mathematical(found.unit)}",
+        )
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -98,6 +102,6 @@ def figure_of(run):
         frameon=False, fontsize=9, ncol=3 if letters <= LETTERS_A_LINE else 1, loc="lower center",
         bbox_to_anchor=(0.5, 1.0), columnspacing=1.2, handlelength=1.6,
     )
-    figure.suptitle(run.name, fontsize=11)
+    name_above(figure, run.name)
     figure.align_ylabels()
     return figure
