@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import LogFormatter
 
 from thalweg.bed import surface_by_solid_fraction
 from thalweg.drawing import name_above
@@ -175,8 +176,9 @@ def draw_drag(axes, bed):
     axes.semilogx(
         beetstra_drag(phi, bed.drag_reynolds_number[shown]), height, "k-", lw=1.2, label="Beetstra et al. (2007)"
     )
+    axes.xaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2.0, 0.5)))   # 30, not 3 x 10^1
     axes.set(xlabel="drag over Stokes' drag [1]", ylabel="height over the bed surface [d]")
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False, fontsize=8, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
 
 
 def draw_temperature(axes, bed):
