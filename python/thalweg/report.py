@@ -98,6 +98,11 @@ def end_of(run):
     return max(float(run.series["time"][-1]), float((run.summary or {}).get("simulated_time") or 0.0))
 
 
+def plain(number, digits):
+    """A number with so many significant digits and, up to a million, without an exponent: 100, not 1e+02."""
+    return f"{float(f'{number:.{digits}g}'):g}"
+
+
 def describe_transport(report):
     found = transport(report.run, *report.wanted)
     mean, verdict = found.rate, found.verdict
@@ -109,8 +114,8 @@ def describe_transport(report):
     if found.moving is not None:
         moving, error = found.moving
         report.numbers["moving_grains"] = {"mean": moving, "error": error}
-        known = f" +- {error:.2g}" if math.isfinite(error) else ""
-        report.say("moving", f"{moving:.4g}{known} grains faster than the threshold")
+        known = f" +- {plain(error, 2)}" if math.isfinite(error) else ""
+        report.say("moving", f"{plain(moving, 4)}{known} grains faster than the threshold")
 
 
 def times_of_means(run, observer):

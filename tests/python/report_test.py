@@ -12,7 +12,7 @@ import numpy as np
 import made_up_folder as made_up
 import thalweg
 from thalweg import __main__ as program
-from thalweg.report import Report, describe_water, report_of, window
+from thalweg.report import Report, describe_water, plain, report_of, window
 from thalweg.tables import read_series
 
 D, SIZE = 4.95e-3, np.array([0.12, 0.0105, 0.1485])
@@ -210,6 +210,10 @@ class Reports(made_up.MadeUpFolder):
     def test_a_run_that_ended_between_two_rows(self):
         (self.folder / "summary.json").write_text('{"simulated_time": 4.0037}')
         self.assertIn("1 to 4 s of 4.0037 s", report_of(thalweg.Run(self.folder)).lines[0])
+
+    def test_numbers_of_grains_have_no_exponent(self):
+        for number, digits, text in ((103.2, 2, "100"), (12345.6, 4, "12350"), (6.32, 2, "6.3"), (0.0, 2, "0")):
+            self.assertEqual(plain(number, digits), text)
 
     def test_times(self):
         run = thalweg.Run(self.folder)
