@@ -197,6 +197,10 @@ class Report(unittest.TestCase):
         text = self.page().text
         self.assertNotIn("in front of the flow", text)
         self.assertIn("q_s is the volume of grains that passes per unit width and time;", text)
+        # Where no mean has begun, none is shaded.
+        self.case(("from: 1.0", "from: 1000"))
+        text = self.page().text
+        self.assertIn("q_s is the volume of grains that passes per unit width and time. There is no mean:", text)
 
     def test_a_run_with_nothing_yet(self):
         for path in self.folder.iterdir():

@@ -112,6 +112,8 @@ def caption_of_rates(run):
     symbol = f"q* is {volume} over sqrt((s - 1) g d^3)" if "q_star" in run.series else f"q_s is {volume}"
     if run.system == "continuum":
         return f"Transport rate against time. {symbol}; the point: the state at the end."
+    if transport_rate.mean_transport(run) is None:
+        return f"Transport rate against time. {symbol}."
     return f"Transport rate against time. {symbol}; shaded: the time of the mean, with a band of one standard error."
 
 
