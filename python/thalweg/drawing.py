@@ -68,8 +68,8 @@ def without_holes(layer):
 
 
 def with_periodic_images(position, radius, speed, size, periodic):
-    """The grains and copies of those that stick out of a periodic face across x or y."""
-    for axis in (0, 1):
+    """The grains and copies of those that stick out of a periodic face."""
+    for axis in range(3):
         if not periodic[axis]:
             continue
         low, high = position[:, axis] < radius, position[:, axis] > size[axis] - radius

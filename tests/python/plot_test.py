@@ -180,6 +180,14 @@ class Plot(unittest.TestCase):
                                            np.array([0.9, 0.1])[order], extent, 100.0, lambda v: v)
             np.testing.assert_array_equal(both, alone)
 
+    def test_a_grain_in_a_corner_of_a_periodic_box_is_seen_in_all(self):
+        size, corner = np.array([1.0, 2.0, 3.0]), np.array([[0.1, 1.0, 2.9]])
+        for periodic, places in (((True, True, True), 4), ((True, True, False), 2), ((False, True, False), 1)):
+            position, radius, speed = drawing.with_periodic_images(corner, np.array([0.2]), np.array([5.0]), size, periodic)
+            self.assertEqual((len(position), set(radius), set(speed)), (places, {0.2}, {5.0}))
+            self.assertEqual(len(np.unique(position, axis=0)), places)
+        np.testing.assert_allclose((position - corner) % size, 0.0)
+
     def test_holes_take_the_mean_of_their_neighbours(self):
         layer = np.ma.array([[1.0, 2.0, 3.0, 4.0, 5.0]] * 5, mask=np.zeros((5, 5), bool))
         layer[2, 2] = np.ma.masked
