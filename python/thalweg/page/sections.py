@@ -167,7 +167,7 @@ def reach_section(run):
         text = f"The balance of the bins is out by {number(found['balance_residual'])} grains."
         if found["arrived_grains"] or found["left_grains"]:
             stay = found["residence_time_mean"]
-            came = f"{found['arrived_grains']:g} grains came in and {found['left_grains']:g} left"
+            came = f"{found['arrived_grains']:.0f} grains came in and {found['left_grains']:.0f} left"
             if stay is not None:
                 came += f"; the mean residence time of those that did both is {number(stay, 3)} {units_of(run).named('s')}"
             text = f"{came}. {text}"
