@@ -18,6 +18,13 @@ class CaseLoader(yaml.SafeLoader):
     """For yaml.load()."""
     yaml_implicit_resolvers = {}   # in place of those of YAML 1.1
 
+    def compose_node(self, parent, index):
+        known = self.anchors.get(self.peek_event().anchor) if self.check_event(yaml.AliasEvent) else None
+        if known is not None and known.end_mark is None:   # it would have no end
+            mark = self.peek_event().start_mark
+            raise yaml.composer.ComposerError(None, None, "an alias is part of what it stands for", mark)
+        return super().compose_node(parent, index)
+
     def compose_scalar_node(self, anchor):
         event = self.peek_event()
         if event.tag not in (None, "!"):
@@ -35,12 +42,13 @@ class CaseLoader(yaml.SafeLoader):
     def construct_mapping(self, node, deep=False):
         known = {}
         for key, _ in node.value:
-            if key.value in known and isinstance(key, yaml.ScalarNode):
+            if not isinstance(key, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, "a key is not a word", key.start_mark)
+            if key.value in known:
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key {key.value} is given twice", key.start_mark
                 )
-            if isinstance(key, yaml.ScalarNode):
-                known[key.value] = key
+            known[key.value] = key
         return super().construct_mapping(node, deep)
 
     def construct_number(self, node):

@@ -91,6 +91,12 @@ class Scalars(ProgramTest):
     def test_a_key_given_twice_is_an_error(self):
         with self.assertRaisesRegex(yaml.YAMLError, "given twice"):
             yaml.load("a: 1\na: 2\n", CaseLoader)
+        with self.assertRaisesRegex(yaml.YAMLError, "a key is not a word"):
+            yaml.load("? [a]\n: 1\n", CaseLoader)
+        for endless in ("a: &b [1, *b]", "a: &b {c: {d: *b}}"):
+            with self.assertRaisesRegex(yaml.YAMLError, "part of what it stands for"):
+                yaml.load(endless, CaseLoader)
+        self.assertEqual(yaml.load("a: &b [1]\nc: *b\n", CaseLoader), {"a": [1], "c": [1]})
         self.assertEqual(yaml.load("<<: {a: 1}\nb: 2\n", CaseLoader), {"<<": {"a": 1}, "b": 2})
 
 
