@@ -155,6 +155,7 @@ class Points(Folder):
             ({"vary": {"a": [1]}, "set": {"a": 2}}, "a is given twice"), ({"ranks": 0}, "ranks: 0"),
             ({"bisect": {"key": "a"}}, "bisect.from is missing"),
             ({"bisect": BISECT | {"from": 2}}, "not a range to search"),
+            ({"bisect": BISECT | {"width": 1e-18}}, "give at least 1e-09"),
             ({"bisect": BISECT | {"width": 0}}, "width above 0"), ({"bisect": BISECT | {"spacing": "log"}}, "above 0"),
             ({"bisect": BISECT | {"holds": "q_star"}}, "compared with"),
             ({"bisect": BISECT, "vary": {"gravity.slope": [1, 2]}}, "bisect.key: gravity.slope is also"),

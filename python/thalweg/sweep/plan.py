@@ -241,6 +241,9 @@ def bisection_of(given):
                          + (", both above 0 for spacing: log." if geometric else "."))
     if width <= 0.0 or not 0.0 <= share < 1.0:
         raise SweepError("bisect: give a width above 0, and a share of the repetitions from 0 on and below 1.")
+    finest = ROUNDING * (1.0 if geometric else max(abs(lower), abs(upper)))   # closer values would be the same run
+    if width < finest:
+        raise SweepError(f"bisect.width: {width:g} is finer than values are told apart; give at least {finest:g}.")
     repeat = [[{key: value} for value in values_of(key, values)] for key, values in section(given, "repeat").items()]
     repetitions = tuple({key: value for settings in combination for key, value in settings.items()}
                         for combination in itertools.product(*repeat))
