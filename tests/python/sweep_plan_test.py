@@ -86,6 +86,17 @@ class Points(Folder):
         names = [task.run.name for task in tasks_of(self.plan(together=entries + [{"b": 2, "c": 2}]), self.folder)]
         self.assertEqual(names, ["b_1", "b_2", "b_2-c_2"])
 
+    def test_runs_that_would_share_a_folder_are_refused(self):
+        repeated = {"bisect": BISECT | {"repeat": {"seed": [1, 2]}}}
+        for content in ({"vary": {"a": [1, 2]}}, {"vary": {"a": [1, 2]}} | repeated):
+            command.refuse_same_names(self.plan(**content), "sweep.yaml")
+        for content, name in (
+            ({"vary": {"a": [1, 1]}}, "a_1"), ({"vary": {"a": ["x y", "x_y"]}}, "a_x_y"), ({"together": [{}, {}]}, None),
+            ({"vary": {"a": [3]}, "bisect": BISECT | {"repeat": {"seed": [1, 2, 1]}}}, "a_3-seed_1"),
+        ):
+            with self.subTest(content=content), self.assertRaisesRegex(SweepError, name or "give a list of sections"):
+                command.refuse_same_names(self.plan(**content), "sweep.yaml")
+
     def test_names_stay_when_values_are_added(self):
         one, two = self.plan(vary={"a": [1]}, together=[{"b": 1}]), self.plan(
             vary={"a": [1, 2]}, together=[{"b": 1}, {"b": 2}]

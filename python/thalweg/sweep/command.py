@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 from thalweg.case_file import read_case
@@ -78,6 +79,16 @@ def refuse_impossible(plan, tasks):
     return max((memory_needed(check.stdout) for check in said), default=0.0)
 
 
+def refuse_same_names(plan, file):
+    """Of runs: they would share a folder, and a repetition would count twice."""
+    repetitions = plan.bisections[0].repetitions if plan.bisections else ({},)
+    keys = plan.naming_keys + list(repetitions[0])
+    names = Counter(name_of(point | repetition, keys) for point in plan.points for repetition in repetitions)
+    name, count = names.most_common(1)[0]
+    if count > 1:
+        raise SweepError(f"{file}: two runs would be called {name}; give them values that differ.")
+
+
 def describe(task, keys):
     return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
 
@@ -130,11 +141,7 @@ def sweep(wanted):
     folder = wanted.out or wanted.sweep.with_suffix("")
     if wanted.jobs is not None and wanted.jobs < 1:
         raise SweepError(f"--jobs {wanted.jobs}: give at least one run at a time.")
-    names = [name_of(point, plan.naming_keys) for point in plan.points]
-    if len(set(names)) < len(names):
-        raise SweepError(
-            f"{wanted.sweep}: two runs have the same values; there is {max(names, key=names.count)} twice."
-        )
+    refuse_same_names(plan, wanted.sweep)
     tasks = tasks_of(plan, folder)
     if wanted.slurm:
         print(slurm_job(wanted, len(tasks), plan.ranks, folder), end="")
