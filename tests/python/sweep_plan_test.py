@@ -130,6 +130,15 @@ class Points(Folder):
             set(inputs_of(case, {"obstacles.0.stl": "other.stl"})["files"]), {"bed.h5", "begun", "other.stl"}
         )
 
+    def test_files_are_beside_the_case_where_that_is_a_link(self):
+        (self.folder / "kept").mkdir()
+        case = (self.folder / "case.yaml").rename(self.folder / "kept/case.yaml")
+        (self.folder / "case.yaml").symlink_to(case)
+        (self.folder / "bed.h5").write_text("bed")
+        plan = self.plan(vary={"grains.0.placement.file": ["bed.h5"]})
+        self.assertEqual(plan.case, self.folder / "case.yaml")
+        self.assertEqual(set(inputs_of(plan.case, plan.points[0])["files"]), {"bed.h5"})
+
     def test_of_a_run_to_begin_from_only_the_latest_checkpoint_counts(self):
         case, begun = self.folder / "case.yaml", self.folder / "begun/checkpoints"
         case.write_text("system: grains\ninitial: {from: begun}\n")

@@ -153,7 +153,7 @@ def plan_of(content, folder):
     refuse_unknown(content, KEYS, "")
     if not isinstance(content.get("case"), str):
         raise SweepError("case is missing; give the case file that is run, relative to this file.")
-    case = (folder / content["case"]).resolve()
+    case = (folder / content["case"]).absolute()   # not what a link leads to: files that it names are beside the link
     if not case.is_file():
         raise SweepError(f"case: {case} cannot be read.")
     points = points_of(content)
