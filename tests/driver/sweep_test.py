@@ -336,6 +336,8 @@ class Sweep(ProgramTest):
         (self.folder / "dated.yaml").write_bytes(b"case: \xff\n")
         self.assert_refused("sweep", "dated.yaml", words=["dated.yaml", "UTF-8"])
 
+        self.write("", "without_an_ending")
+        self.assert_refused("sweep", "without_an_ending", words=["without_an_ending", "not a folder", "--out"])
         self.assert_refused("sweep", "gone.yaml", words=["gone.yaml", "No such file"])
         self.assert_refused(
             "sweep", self.write("vary: {contact.wall_friction: 1}\n"),

@@ -17,7 +17,7 @@ from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runner import Runner
-from thalweg.sweep.runs import BEGUN, FAILED, name_of, short_keys
+from thalweg.sweep.runs import BEGUN, FAILED, launcher, name_of, short_keys
 from thalweg.sweep.tasks import BisectionTask, result_columns, tasks_of
 from thalweg.sweep.warnings import grouped
 
@@ -327,6 +327,15 @@ class TwoSweepsOfAFolder(Folder):
         here.release()
         self.assertIsNone(there.start(str(program)))
         self.assertEqual(there.state, FAILED)
+
+
+class Launcher(unittest.TestCase):
+    def test_what_starts_the_ranks(self):
+        for given, words in (("", ["mpirun"]), ("srun --mpi=pmix", ["srun", "--mpi=pmix"]), ("'my run' -v", ["my run", "-v"])):
+            with unittest.mock.patch.dict(os.environ, THALWEG_LAUNCH=given):
+                self.assertEqual(launcher(), words)
+        with unittest.mock.patch.dict(os.environ, THALWEG_LAUNCH="srun '"), self.assertRaisesRegex(SweepError, "quote"):
+            launcher()
 
 
 class Machine(unittest.TestCase):

@@ -139,6 +139,8 @@ def sweep(wanted):
     SweepError."""
     plan = read_plan(wanted.sweep)
     folder = wanted.out or wanted.sweep.with_suffix("")
+    if folder.exists() and not folder.is_dir():
+        raise SweepError(f"{folder}, for runs and tables, is not a folder; give another one as --out.")
     if wanted.jobs is not None and wanted.jobs < 1:
         raise SweepError(f"--jobs {wanted.jobs}: give at least one run at a time.")
     refuse_same_names(plan, wanted.sweep)

@@ -111,10 +111,7 @@ class SweepRun:
 
     def command(self, program):
         arguments = ["run", str(self.case), f"--out={self.folder}", "--resume"] + set_options(self.settings)
-        launcher = (
-            shlex.split(os.environ.get("THALWEG_LAUNCH", "mpirun")) + ["-n", str(self.ranks)] if self.ranks > 1 else []
-        )
-        return launcher + [program] + arguments
+        return (launcher() + ["-n", str(self.ranks)] if self.ranks > 1 else []) + [program] + arguments
 
     def start(self, program):
         """The process of the run, which saves its state and stops at SIGUSR1 and when the sweep is killed; None while
@@ -158,6 +155,14 @@ class SweepRun:
     def remember(self, failure):
         self.failure = failure
         replace_text(self.note, json.dumps(self.inputs | {"failure": failure}, indent=1) + "\n")
+
+
+def launcher():
+    given = os.environ.get("THALWEG_LAUNCH") or "mpirun"
+    try:
+        return shlex.split(given)
+    except ValueError:
+        raise SweepError(f"THALWEG_LAUNCH={given}: there is a quote without its other one.") from None
 
 
 def check_command(program, case, settings):
