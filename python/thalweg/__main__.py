@@ -5,6 +5,8 @@ import os
 import sys
 from pathlib import Path
 
+INTERRUPTED = 130   # exit code, as shells have it for Ctrl-C
+
 try:
     import thalweg.clump_picture
     import thalweg.plot
@@ -13,6 +15,8 @@ try:
     from thalweg.errors import MissingName, RunFolderError
     from thalweg.report import report_of
     from thalweg.run import Run
+except KeyboardInterrupt:
+    sys.exit(INTERRUPTED)
 except ModuleNotFoundError as missing:
     sys.exit(
         f"thalweg: {sys.executable} has no module {missing.name}; install it (python3-numpy, python3-h5py, python3-yaml"
@@ -63,6 +67,8 @@ def main(arguments=None):
     except (RunFolderError, MissingName) as error:
         print(f"thalweg: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except BrokenPipeError:   # head, for example, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0

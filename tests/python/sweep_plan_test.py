@@ -13,6 +13,7 @@ from pathlib import Path
 
 import h5py
 import made_up_folder   # noqa: F401  finds the package
+from thalweg.__main__ import main
 from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
@@ -327,6 +328,12 @@ class TwoSweepsOfAFolder(Folder):
         here.release()
         self.assertIsNone(there.start(str(program)))
         self.assertEqual(there.state, FAILED)
+
+
+class Interrupted(unittest.TestCase):
+    def test_ctrl_c_before_or_after_the_runs_ends_it_without_a_word(self):
+        with unittest.mock.patch("thalweg.sweep.command.sweep", side_effect=KeyboardInterrupt):
+            self.assertEqual(main(["sweep", "sweep.yaml"]), 130)
 
 
 class Launcher(unittest.TestCase):
