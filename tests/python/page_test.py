@@ -131,6 +131,11 @@ class Report(unittest.TestCase):
             self.assertIn("mpirun -n 2 thalweg run", page.text)
             self.assertEqual(re.search(r"--out \S+ --resume", page.text) is not None, not finished)
 
+    def test_the_versions_of_a_run_that_went_back_to_the_first(self):
+        with open(self.folder / "run.log", "a") as log:
+            log.write("Thalweg 0.1.0 (aaa): Made up\nresolved on 2 ranks\n")
+        self.assertIn("version 0.1.0 (aaa) versions before 0.1.0 (bbb) ", self.page().text)
+
     def test_the_balance_of_stresses(self):
         diameter = made_up_run.DIAMETER
         self.case(

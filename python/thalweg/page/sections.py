@@ -286,10 +286,11 @@ def case_section(run, sessions):
 def provenance(run, sessions):
     summary = run.summary or {}
     rows = [("folder", str(run.folder.resolve())), ("command", command_of(run) or "not known")]
-    rows.append(("version", summary.get("version") or (sessions[-1].version if sessions else "not known")))
-    versions = list(dict.fromkeys(session.version for session in sessions))
-    if len(versions) > 1:
-        rows.append(("versions before", ", ".join(versions[:-1])))
+    version = summary.get("version") or (sessions[-1].version if sessions else "not known")
+    rows.append(("version", version))
+    others = [other for other in dict.fromkeys(session.version for session in sessions) if other != version]
+    if others:
+        rows.append(("versions before", ", ".join(others)))
     rows += facts(summary.get("provenance") or {})
     log = run.folder / "run.log"
     if log.exists():
