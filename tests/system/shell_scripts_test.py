@@ -22,8 +22,8 @@ class Words(unittest.TestCase):
             program.write_text(f'#!/bin/sh\necho "$0" >>"{self.trace}"\nexit 1\n')
             program.chmod(0o755)
 
-    def result_of(self, script, *words):
-        environment = os.environ | {"PATH": f"{self.folder.name}:{os.environ['PATH']}"}
+    def result_of(self, script, *words, **variables):
+        environment = os.environ | {"PATH": f"{self.folder.name}:{os.environ['PATH']}"} | variables
         return subprocess.run([ROOT / "scripts" / script, *words], capture_output=True, text=True, env=environment,
                               stdin=subprocess.DEVNULL, timeout=60)
 
@@ -45,6 +45,13 @@ class Words(unittest.TestCase):
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertIn("nonsense", result.stderr.splitlines()[0])
                     self.assertFalse(self.trace.exists())
+
+    def test_a_number_of_ranks_that_is_none_is_refused_before_anything_happens(self):
+        for ranks in ("two", "0", "-1", "1.5"):
+            result = self.result_of("run", THALWEG_RANKS=ranks)
+            self.assertEqual((result.returncode, result.stdout), (2, ""))
+            self.assertIn(f"THALWEG_RANKS={ranks} is not a number of ranks", result.stderr)
+            self.assertFalse(self.trace.exists())
 
 
 # As APT 3 does with the file it reports its progress to: whoever writes there is told that there is no room, instead of
