@@ -284,7 +284,7 @@ class Sweep(ProgramTest):
         )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(
-            f"1 run at a time, though there are cores for 3: each takes about {needed / 1e9:.3g} GB", result.stdout
+            f"1 run at a time, though there are cores for 3: a run takes up to {needed / 1e9:.3g} GB", result.stdout
         )
         self.assertNotIn("2 going", result.stdout)
         self.assertIn("3 of 3 runs done", result.stdout)

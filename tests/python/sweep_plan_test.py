@@ -361,7 +361,7 @@ class Machine(unittest.TestCase):
             self.runs_at_a_time(8, 25e9, 1, 10e9),
             (
                 2,
-                "2 runs at a time, though there are cores for 8: each takes about "
+                "2 runs at a time, though there are cores for 8: a run takes up to "
                 "10 GB of memory, and 25 GB are free (--jobs overrides this)\n",
             ),
         )
@@ -377,6 +377,25 @@ class Machine(unittest.TestCase):
             SweepError, "THALWEG_CORES.*--jobs"
         ):
             machine.runs_at_a_time(1, 0.0)
+
+
+class Memory(Folder):
+    """The program says of each run that it takes as many bytes as its setting `size`."""
+
+    def test_the_largest_run_counts_wherever_it_stands(self):
+        program = self.folder / "program"
+        program.write_text('#!/bin/sh\nfor word; do :; done\n'
+                           f'echo . >> "{self.folder}/checks"\necho "{{\\"figures\\": {{\\"memory\\": ${{word#size=}}}}}}"\n')
+        program.chmod(0o755)
+        plan = self.plan(vary={"a.seed": [1, 2], "size": [10, 1000, 30]})
+        tasks = tasks_of(plan, self.folder)
+        with unittest.mock.patch.dict(os.environ, THALWEG_PROGRAM=str(program)):
+            self.assertEqual(command.most_memory(plan, tasks), 1000.0)
+            self.assertEqual((self.folder / "checks").read_text(), ".\n" * 3)   # seeds make no difference
+            for task in tasks:
+                if task.settings["size"] == 1000:
+                    task.run.failure = "it has been made"
+            self.assertEqual(command.most_memory(plan, tasks), 30.0)
 
 
 class Slurm(Folder):

@@ -7,10 +7,11 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from thalweg.case_file import read_case
-from thalweg.sweep.machine import memory_needed, runs_at_a_time
+from thalweg.sweep.machine import cores, memory_needed, runs_at_a_time
 from thalweg.sweep.plan import SweepError, figure_of, meant_by, read_plan
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import DONE, FAILED, check_command, name_of
@@ -68,7 +69,7 @@ def asked(command):
 
 def refuse_impossible(plan, tasks):
     """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that
-    run's. Returns the memory that a run takes, the most of those looked at, in bytes."""
+    run's."""
     ends = [settings for task in (tasks[:1] + tasks[1:][-1:]) for settings in task.ends()]
     said = [asked(check_command(program(), plan.case, settings)) for settings in ends]
     # A bisection chooses its runs as it goes on.
@@ -76,7 +77,16 @@ def refuse_impossible(plan, tasks):
         raise SweepError(
             f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}"
         )
-    return max((memory_needed(check.stdout) for check in said), default=0.0)
+
+
+def most_memory(plan, tasks):
+    """That a run takes of those that are left, in bytes. Seeds make no difference."""
+    left = [settings for task in tasks if task.wanted() for settings in task.ends()]
+    different = {json.dumps([(key, value) for key, value in settings.items() if not key.endswith(".seed")]): settings
+                 for settings in left}
+    with ThreadPoolExecutor(max_workers=cores()) as pool:
+        checks = pool.map(lambda settings: asked(check_command(program(), plan.case, settings)), different.values())
+        return max((memory_needed(check.stdout) for check in checks), default=0.0)
 
 
 def refuse_same_names(plan, file):
@@ -158,8 +168,8 @@ def sweep(wanted):
     if wanted.tables:
         return written(plan, tasks, units_of(plan), folder)
     units = units_of(plan)
-    needed = refuse_impossible(plan, tasks)
-    jobs = wanted.jobs or runs_at_a_time(plan.ranks, needed)
+    refuse_impossible(plan, tasks)
+    jobs = wanted.jobs or runs_at_a_time(plan.ranks, most_memory(plan, tasks))
     runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry, wanted.task is None)
     finished = runner.work()
     code = written(plan, tasks, units, folder) if wanted.task is None else 0

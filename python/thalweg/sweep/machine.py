@@ -29,15 +29,15 @@ def memory_needed(report):
 
 
 def runs_at_a_time(ranks, needed):
-    """ranks: of a run; needed: its memory, bytes. Says so where the memory is what allows fewer than the cores do."""
+    """ranks: of a run; needed: its memory, of the largest, bytes. Says so where the memory is what allows fewer than the cores do."""
     by_cores = max(1, int(told("THALWEG_CORES")) // ranks)
     there = told("THALWEG_MEMORY")
     by_memory = max(1, int(there // needed)) if needed > 0.0 else by_cores
     if by_memory < by_cores:
         print(
             (
-                f"{by_memory} run{'s' if by_memory > 1 else ''} at a time, though there are cores for {by_cores}: each"
-                f" takes about {needed / 1e9:.3g} GB of memory, and {there / 1e9:.3g} GB are free (--jobs overrides"
+                f"{by_memory} run{'s' if by_memory > 1 else ''} at a time, though there are cores for {by_cores}: a run"
+                f" takes up to {needed / 1e9:.3g} GB of memory, and {there / 1e9:.3g} GB are free (--jobs overrides"
                 " this)"
             ), flush=True,
         )
