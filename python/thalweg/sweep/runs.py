@@ -93,7 +93,7 @@ class SweepRun:
 
     @property
     def is_open(self):
-        return self.state not in (DONE, FAILED)
+        return not self.failure and not self.finished   # which asks no file system, as `state` does
 
     @property
     def wall_seconds(self):
