@@ -313,6 +313,24 @@ class Bisection(Folder):
         self.assertEqual(printed.getvalue(), "1 of 3 runs done, left about 9 s\n2 of 3 runs done, left about 5 s\n")
 
 
+class AfterAnError(Folder):
+    def test_runs_that_are_going_save_their_state_before_the_sweep_ends(self):
+        program = self.folder / "program"
+        program.write_text(f'#!/bin/sh\ntrap "sleep 0.5; echo saved > {self.folder}/saved; exit 3" USR1\n'
+                           f'echo going > {self.folder}/going\nwhile true; do sleep 0.05; done\n')
+        program.chmod(0o755)
+        plan = self.plan()
+        runner = Runner(plan, tasks_of(plan, self.folder), {}, str(program), self.folder, 1)
+
+        def fail(last=False):
+            if (self.folder / "going").exists():
+                raise SweepError("the case has been changed")
+
+        with unittest.mock.patch.object(runner, "report", fail), self.assertRaisesRegex(SweepError, "has been changed"):
+            runner.work()
+        self.assertEqual((self.folder / "saved").read_text(), "saved\n")
+
+
 class TwoSweepsOfAFolder(Folder):
     def test_a_run_is_not_taken_before_its_sweep_has_seen_how_it_ended(self):
         program = self.folder / "program"

@@ -48,6 +48,8 @@ class Runner:
                 signal.signal(number, handler)
             for process, _ in self.going.values():   # after an exception
                 process.send_signal(signal.SIGUSR1)
+            for process, _ in self.going.values():   # the end of this one would kill the ranks of those still saving
+                process.wait()
         self.report(last=True)
         return not self.waiting()
 
