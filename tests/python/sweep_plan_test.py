@@ -440,6 +440,14 @@ class Results(Folder):
         runs = [unittest.mock.Mock(summary=summary) for summary in summaries]
         return result_columns(self.plan(**content), runs)
 
+    def test_values_are_those_of_a_case(self):
+        values = [{"every": 0.5}, None, True, 1e-7, [1, "ü"], "no", 3]
+        plan = self.plan(vary={"output.grains": values})
+        tasks = tasks_of(plan, self.folder)
+        found = [row[1] for row in tables.runs_table(plan, [task.run for task in tasks], {})[1:]]
+        self.assertEqual(sorted(found), sorted(['{"every": 0.5}', "null", "true", "1e-07", '[1, "ü"]', "no", "3"]))
+        self.assertEqual(command.describe(tasks[1], plan.keys), "output.grains = null")
+
     def test_a_column_of_two_continua_has_its_figures(self):
         self.assertEqual(self.columns(None, self.CONTINUUM), ["figures.q_star", "figures.unsteadiness"])
         condition = self.plan(bisect=BISECT | {"holds": "figures.q_star > 0.05"}).bisections[0].condition

@@ -15,7 +15,7 @@ from thalweg.sweep.machine import cores, memory_needed, runs_at_a_time
 from thalweg.sweep.plan import SweepError, figure_of, meant_by, read_plan
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import DONE, FAILED, check_command, name_of
-from thalweg.sweep.tables import those_without_dimension, units_of_keys, write_tables
+from thalweg.sweep.tables import as_in_case, those_without_dimension, units_of_keys, write_tables
 from thalweg.sweep.tasks import known_runs, tasks_of
 from thalweg.sweep.warnings import lines_of, said_by_checks
 
@@ -100,7 +100,8 @@ def refuse_same_names(plan, file):
 
 
 def describe(task, keys):
-    return ", ".join(f"{key} = {task.settings[key]}" for key in keys if key in task.settings) or "the case as it is"
+    given = (f"{key} = {as_in_case(task.settings, key)}" for key in keys if key in task.settings)
+    return ", ".join(given) or "the case as it is"
 
 
 def list_tasks(plan, tasks):

@@ -1,12 +1,12 @@
 """What a sweep has found, as CSV: runs.csv, and thresholds.csv of a bisection. Units stand in the heads."""
 import csv
 import io
+import json
 import re
 
 from thalweg.sweep.plan import figure_of
 from thalweg.sweep.runs import DONE, WAITING, replace_text
 from thalweg.sweep.tasks import result_columns
-
 
 
 def write_tables(plan, tasks, units, folder):
@@ -34,7 +34,7 @@ def runs_table(plan, runs, units):
         figures = [figure_of(run.summary or {}, column) for column in columns]
         rows.append(
             [run.name]
-            + [run.settings.get(key, "") for key in keys]
+            + [as_in_case(run.settings, key) for key in keys]
             + [run.state, warning_count(run), run.version, text(run.wall_seconds)]
             + [text(figure) for figure in figures]
             + [run.failure or ""]
@@ -55,7 +55,7 @@ def thresholds_table(plan, tasks, units):
     for task in tasks:
         state, lower, upper, threshold = task.result()
         half = 0.5 * (upper - lower) if state == "found" else None
-        rows.append([task.settings.get(key, "") for key in keys] +
+        rows.append([as_in_case(task.settings, key) for key in keys] +
                     [text(threshold), text(half), text(lower), text(upper), state,
                      sum(run.state == DONE for run in task.runs)])
     return rows
@@ -72,6 +72,12 @@ def order(value):
 
 def text(value):
     return "" if value is None or value != value else f"{value:.9g}"
+
+
+def as_in_case(settings, key):
+    """A value as a case has it, not as Python writes it; empty where the key is not set."""
+    value = settings.get(key, "")
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
 def headed(name, units, measured=None):
