@@ -297,8 +297,9 @@ class Sweep(ProgramTest):
         self.assertIn("--jobs 1 --retry &\n", self.run_well("sweep", sweep, "--slurm", "--retry").stdout)
         self.assertIn("contact.wall_friction = 0.3: waiting", self.run_well("sweep", sweep, "--dry-run").stdout)
         self.run_well("sweep", sweep, "--task", "1")
-        self.run_well("sweep", sweep, "--tables")
-        self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
+        for task in ([], ["--task", "1"]):
+            self.run_well("sweep", sweep, "--tables", *task)
+            self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["waiting", "done"])
 
     def test_warnings_are_passed_on_once_with_the_names_of_the_runs(self):
         # Rows every 1e-7 s are less than a step of 5e-6 s; the third run has no such warning.

@@ -162,12 +162,12 @@ def sweep(wanted):
     if wanted.dry_run:
         list_tasks(plan, tasks)
         return 0
+    if wanted.tables:
+        return written(plan, tasks, units_of(plan), folder)
     if wanted.task is not None:
         if not 0 <= wanted.task < len(tasks):
             raise SweepError(f"--task {wanted.task}: the sweep has tasks 0 to {len(tasks) - 1}.")
         tasks = [tasks[wanted.task]]
-    if wanted.tables:
-        return written(plan, tasks, units_of(plan), folder)
     units = units_of(plan)
     refuse_impossible(plan, tasks)
     jobs = wanted.jobs or runs_at_a_time(plan.ranks, most_memory(plan, tasks))
