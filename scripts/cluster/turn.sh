@@ -47,10 +47,11 @@ say() { echo "${0##*/}: $*" >&2; }
 
 latest_checkpoint() { cat -- "$1/checkpoints/latest" 2>/dev/null || true; }
 
-# Of D-HH:MM:SS, D-HH, HH:MM:SS, MM:SS or whole seconds; nothing of anything else, such as UNLIMITED.
+# Of D-HH:MM:SS, D-HH:MM, D-HH, HH:MM:SS, MM:SS or whole seconds; nothing of anything else, such as UNLIMITED.
 seconds_of() {
   local days=0 clock=$1 seconds=0 part
-  if [[ $clock =~ ^([0-9]+)-([0-9]+)$ ]]; then clock+=:00:00; fi
+  if [[ $clock =~ ^[0-9]+-[0-9]+$ ]]; then clock+=:00; fi
+  if [[ $clock =~ ^[0-9]+-[0-9]+:[0-9]+$ ]]; then clock+=:00; fi
   [[ $clock =~ ^([0-9]+-)?([0-9]+:)?([0-9]+:)?[0-9]+$ ]] || return 0
   [[ $clock != *-* ]] || { days=${clock%%-*}; clock=${clock#*-}; }
   for part in ${clock//:/ }; do ((seconds = 60 * seconds + 10#$part)) || true; done

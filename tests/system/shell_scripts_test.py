@@ -65,6 +65,20 @@ while text:
 """
 
 
+class Clocks(unittest.TestCase):
+    def test_times_of_a_scheduler(self):
+        for clock, seconds in {
+            "1-12:30:05": 131405, "1-12:30": 131400, "1-12": 129600, "08:09:10": 29350, "12:30": 750, "45": 45,
+            "UNLIMITED": None, "1-": None, "": None,
+        }.items():
+            said = subprocess.run(
+                ["bash", "-euc", f'source "{ROOT}/scripts/cluster/turn.sh"; seconds_of "$1"', "bash", clock],
+                capture_output=True, text=True, timeout=60,
+            )
+            self.assertEqual(said.stdout.strip(), "" if seconds is None else str(seconds), clock)
+            self.assertEqual(said.returncode, 0, said.stderr)
+
+
 class Setup(unittest.TestCase):
     def test_messages_of_packages_wait_until_there_is_room(self):
         with tempfile.TemporaryDirectory() as name:
