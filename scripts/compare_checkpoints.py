@@ -20,14 +20,29 @@ import numpy as np
 VALUES_AT_A_TIME = 1 << 22
 
 
+OF_HDF5 = (OSError, RuntimeError, KeyError, ValueError)   # what h5py raises of a damaged file
+
+
+class Unreadable(Exception):
+    """A file that cannot be compared, in a sentence."""
+
+
 def checkpoint_at(path):
     """The checkpoint file a path stands for."""
     if path.is_dir():
         latest = path / "checkpoints" / "latest"
         if not latest.exists():
-            raise OSError(f"{path}: the folder has no checkpoint ({latest} is missing)")
-        return latest.parent / latest.read_text(encoding="utf-8").strip()
+            raise Unreadable(f"{path}: the folder has no checkpoint ({latest} is missing)")
+        return latest.parent / latest.read_text(encoding="utf-8", errors="replace").strip()
     return path
+
+
+def opened(path):
+    try:
+        path.open("rb").close()   # whose errors say more
+        return h5py.File(path, "r")
+    except OF_HDF5 as error:
+        raise Unreadable(f"{path}: {getattr(error, 'strerror', None) or 'it is no HDF5 file, or damaged'}") from None
 
 
 def contents(file):
@@ -40,9 +55,12 @@ def contents(file):
         for key in item.attrs:
             found[f"{name}@{key}"] = np.asarray(item.attrs[key])
 
-    file.visititems(add)
-    for key in file.attrs:
-        found[f"@{key}"] = np.asarray(file.attrs[key])
+    try:
+        file.visititems(add)
+        for key in file.attrs:
+            found[f"@{key}"] = np.asarray(file.attrs[key])
+    except OF_HDF5 as error:
+        raise Unreadable(f"{file.filename}: it is damaged: {error}") from None
     return found
 
 
@@ -92,7 +110,7 @@ def difference(first, second):
 
 def compare(first_path, second_path, ignored):
     """Prints every difference; returns how many datasets and attributes differ, and how many there are."""
-    with h5py.File(first_path, "r") as first_file, h5py.File(second_path, "r") as second_file:
+    with opened(first_path) as first_file, opened(second_path) as second_file:
         first, second = contents(first_file), contents(second_file)
         names = sorted(name for name in first.keys() | second.keys() if name not in ignored)
         count = 0
@@ -100,7 +118,10 @@ def compare(first_path, second_path, ignored):
             if name not in first or name not in second:
                 what = f"only in {first_path if name in first else second_path}"
             else:
-                what = difference(first[name], second[name])
+                try:
+                    what = difference(first[name], second[name])
+                except OF_HDF5 as error:
+                    raise Unreadable(f"{name}: {first_path} or {second_path} is damaged: {error}") from None
             if what is not None:
                 count += 1
                 print(f"{name}: {what}")
@@ -117,7 +138,7 @@ def main():
     try:
         first, second = checkpoint_at(arguments.first), checkpoint_at(arguments.second)
         count, total = compare(first, second, set(arguments.ignore))
-    except OSError as error:
+    except Unreadable as error:
         print(f"compare_checkpoints: {error}", file=sys.stderr)
         return 2
     if total == 0:

@@ -93,6 +93,17 @@ class CompareCheckpoints(unittest.TestCase):
         for second in ("missing.h5", "text.h5", "empty"):
             with self.subTest(second):
                 self.assertEqual(self.compare("a.h5", second)[0], 2)
+        write(self.folder / "damaged.h5")
+        whole = (self.folder / "damaged.h5").read_bytes()
+        place = whole.index(b"grains")   # in the index of the root
+        (self.folder / "damaged.h5").write_bytes(whole[:place] + b"\xff" * 400 + whole[place + 400:])
+        (self.folder / "folder/checkpoints").mkdir(parents=True)
+        (self.folder / "folder/checkpoints/latest").write_bytes(b"\xff\xfe")
+        for second, name in (("damaged.h5", "damaged.h5"), ("text.h5", "text.h5"), ("folder", "folder/checkpoints")):
+            with self.subTest(second):
+                code, text = self.compare("a.h5", second)
+                self.assertEqual((code, text.count("\n")), (2, 1), text)
+                self.assertIn(name, text)
 
 
 if __name__ == "__main__":
