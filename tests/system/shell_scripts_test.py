@@ -2,6 +2,7 @@
 import os
 import pathlib
 import pty
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -45,6 +46,13 @@ class Words(unittest.TestCase):
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertIn("nonsense", result.stderr.splitlines()[0])
                     self.assertFalse(self.trace.exists())
+
+    def test_the_coverage_of_no_run_is_refused(self):
+        shutil.copytree(ROOT / "scripts", pathlib.Path(self.folder.name) / "scripts")
+        result = self.result_of(f"{self.folder.name}/scripts/coverage", "--again")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("there is no earlier run in build/coverage", result.stderr)
+        self.assertFalse(self.trace.exists())
 
     def test_a_number_of_ranks_that_is_none_is_refused_before_anything_happens(self):
         for ranks in ("two", "0", "-1", "1.5"):
