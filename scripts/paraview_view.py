@@ -12,7 +12,10 @@ import os
 import sys
 from pathlib import Path
 
-from paraview import simple
+try:
+    from paraview import simple
+except ModuleNotFoundError:
+    sys.exit("paraview_view: this Python has no ParaView; start the script with pvpython, or use thalweg plot picture.")
 
 OF_GRAINS, OF_FLUID = "Viridis (matplotlib)", "Blues"
 DARK, GREY = [0.1, 0.1, 0.1], [0.55, 0.55, 0.55]

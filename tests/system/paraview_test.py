@@ -1,5 +1,6 @@
 """scripts/paraview_view.py makes a picture and a state that ParaView opens again. Left out where there is no pvpython,
 which Debian does not install beside VTK's Python (unpack its packages paraview and python3-paraview elsewhere)."""
+import importlib.util
 import os
 import pathlib
 import shutil
@@ -58,6 +59,16 @@ class ParaviewView(unittest.TestCase):
             done = self.pvpython(ROOT / "scripts/paraview_view.py", folder)
             self.assertEqual(done.returncode, 1)
             self.assertIn("neither grains.pvd nor fluid.pvd", done.stderr)
+
+
+@unittest.skipIf(importlib.util.find_spec("paraview"), "this Python has ParaView")
+class OtherPython(unittest.TestCase):
+    def test_a_python_without_paraview_is_told_what_has_it(self):
+        done = subprocess.run(
+            [sys.executable, ROOT / "scripts/paraview_view.py", "run"], text=True, capture_output=True, timeout=60
+        )
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("pvpython", done.stderr)
 
 
 if __name__ == "__main__":
