@@ -18,7 +18,7 @@ from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError, inputs_of, named_files
 from thalweg.sweep.plan import plan_of
 from thalweg.sweep.runner import Runner
-from thalweg.sweep.runs import BEGUN, FAILED, launcher, name_of, short_keys
+from thalweg.sweep.runs import BEGUN, FAILED, WAITING, launcher, name_of, short_keys
 from thalweg.sweep.tasks import BisectionTask, result_columns, tasks_of
 from thalweg.sweep.warnings import grouped
 
@@ -263,6 +263,12 @@ class Bisection(Folder):
         run.note.unlink()
         with self.assertRaisesRegex(SweepError, "is missing"):
             run.look()
+
+    def test_a_run_that_was_stopped_before_it_began_may_have_other_settings(self):
+        run = BisectionTask(self.folder, self.plan(bisect=BISECT, set={"a": 1}), 0).wanted()[0]
+        run.remember(None)   # of its start; the program has made no folder yet
+        other = BisectionTask(self.folder, self.plan(bisect=BISECT, set={"a": 2}), 0).wanted()[0]
+        self.assertEqual((other.note, other.state), (run.note, WAITING))
 
     def test_geometric_steps(self):
         task, _ = self.search(lambda settings: 0.03, **{"from": 0.01, "spacing": "log", "width": 0.5})

@@ -43,9 +43,7 @@ class SweepRun:
         ended without the figure of a bisection has failed."""
         known = self.read_note()
         self.failure = known.pop("failure", None)
-        if (
-            self.failure and known != self.inputs and not self.folder.exists()
-        ):  # it was refused, and has been corrected since
+        if known != self.inputs and not self.folder.exists():   # it was refused, or stopped before it began
             known, self.failure = {}, None
         if known and known != self.inputs:
             raise SweepError(
