@@ -288,6 +288,16 @@ class Bisection(Folder):
         self.assertEqual(asked.count(0.5), 3)   # three that move decide
         self.assertLess(len(asked), task.search.most_levels() * 5)
 
+    def test_a_share_that_is_exactly_met_is_not_exceeded(self):
+        # 0.58 of 50 is 28.999999999999996 in floating-point numbers.
+        task = BisectionTask(
+            self.folder, self.plan(bisect=BISECT | {"share": 0.58, "repeat": {"seed": {"from": 1, "to": 50}}}), 0
+        )
+        self.assertEqual(task.least_to_settle(0.5), 21)   # that do not show it
+        for number, run in enumerate(task.runs_at(0.5)):
+            self.answer(run, 1.0 if number < 29 else 0.0)
+        self.assertIs(task.verdict(0.5), False)
+
     def test_asks_first_for_as_many_repetitions_as_may_settle_a_value(self):
         task = BisectionTask(self.folder, self.plan(bisect=BISECT | {"repeat": {"seed": {"from": 1, "to": 5}}}), 0)
         self.assertEqual(

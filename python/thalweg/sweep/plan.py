@@ -67,6 +67,10 @@ class Bisection:
     repetitions: tuple   # of settings, one a repetition
     share: float         # of the repetitions: it holds where more than this show it
 
+    def most_shown(self, count):
+        """Of so many repetitions: how many may show the condition where it does not hold."""
+        return math.floor(self.share * count * (1.0 + ROUNDING))
+
     def middle(self, lower, upper):
         return math.sqrt(lower * upper) if self.geometric else 0.5 * (lower + upper)
 

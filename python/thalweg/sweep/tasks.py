@@ -60,10 +60,10 @@ class BisectionTask:
         """Whether the condition holds at a value; None while that is open."""
         runs = self.runs_at(value)
         shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
-        needed = self.search.share * len(runs)
-        if sum(shown) > needed:
+        most_shown = self.search.most_shown(len(runs))
+        if sum(shown) > most_shown:
             return True
-        return False if sum(shown) + len(runs) - len(shown) <= needed else None
+        return False if sum(shown) + len(runs) - len(shown) <= most_shown else None
 
     def bracket(self):
         """The range in which the threshold is, as far as it is known, and the values that are to be settled next."""
@@ -93,7 +93,7 @@ class BisectionTask:
     def least_to_settle(self, value):
         runs = self.runs_at(value)
         shown = [self.search.condition.holds(run.summary) for run in runs if run.state == DONE]
-        most_shown = math.floor(self.search.share * len(runs))   # with which it does not hold
+        most_shown = self.search.most_shown(len(runs))
         failing = len(shown) - sum(shown)
         return max(1, min(most_shown + 1 - sum(shown), len(runs) - most_shown - failing))
 
