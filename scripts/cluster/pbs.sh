@@ -18,10 +18,10 @@
 #PBS -r y
 #PBS -j oe
 set -euo pipefail
-cd "$PBS_O_WORKDIR"
 
 usage="usage: CASE=CASE.yaml FOLDER=RUN_FOLDER qsub -v CASE,FOLDER pbs.sh"
-: "${CASE:?$usage}" "${FOLDER:?$usage}"
+: "${CASE:?$usage}" "${FOLDER:?$usage}" "${PBS_O_WORKDIR:?$usage}"
+cd "$PBS_O_WORKDIR"
 scripts=${THALWEG_SCRIPTS:-scripts/cluster}
 source "$scripts/turn.sh"
 

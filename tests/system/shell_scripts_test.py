@@ -73,6 +73,18 @@ while text:
 """
 
 
+class JobScripts(unittest.TestCase):
+    def test_without_what_they_need_they_say_how_they_are_submitted(self):
+        environment = {name: value for name, value in os.environ.items()
+                       if not name.startswith(("CASE", "FOLDER", "SLURM", "PBS"))}
+        for script, command in (("slurm.sh", "sbatch slurm.sh CASE"), ("pbs.sh", "qsub -v CASE,FOLDER pbs.sh")):
+            for words in ([], ["--help"]):
+                result = subprocess.run(["bash", ROOT / "scripts/cluster" / script, *words], capture_output=True, text=True,
+                                        env=environment, timeout=60)
+                self.assertNotEqual(result.returncode, 0)
+                self.assertIn(command, result.stderr)
+
+
 class Clocks(unittest.TestCase):
     def test_times_of_a_scheduler(self):
         for clock, seconds in {
