@@ -118,20 +118,21 @@ class Sweep(ProgramTest):
 
     def test_a_signal_stops_it_in_good_order(self):
         sweep = self.write("set: {run.until: 100.0}\nvary: {gravity.slope: [0.5, 0.6, 0.7]}\n")
-        going = subprocess.Popen(
-            [THALWEG, "sweep", sweep, "--jobs", "1"], cwd=self.folder, stdout=subprocess.PIPE, text=True
-        )
-        log = self.folder / "sweep/runs/slope_0.5/run.log"
-        deadline = time.monotonic() + 60.0
-        while not log.exists() and time.monotonic() < deadline:
-            time.sleep(0.02)
-        time.sleep(0.5)
-        os.kill(going.pid, signal.SIGTERM)
-        said, _ = going.communicate(timeout=60)
-        self.assertEqual(going.returncode, 3)   # as thalweg run says
-        self.assertIn("the same command resumes the sweep", said)
-        self.assertEqual([row["state"] for row in self.table("sweep/runs.csv")], ["begun", "waiting", "waiting"])
-        self.assertTrue((self.folder / "sweep/runs/slope_0.5/checkpoints/latest").exists())
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            going = subprocess.Popen(
+                [THALWEG, "sweep", sweep, "--jobs", "1", "--out", number.name], cwd=self.folder, stdout=subprocess.PIPE,
+                text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),
+            )
+            self.wait_for_log(f"{number.name}/runs/slope_0.5", going)
+            time.sleep(0.5)
+            os.kill(going.pid, number)
+            said, _ = going.communicate(timeout=60)
+            self.assertEqual(going.returncode, 3)   # as thalweg run says
+            self.assertIn("the same command resumes the sweep", said)
+            self.assertEqual(
+                [row["state"] for row in self.table(f"{number.name}/runs.csv")], ["begun", "waiting", "waiting"]
+            )
+            self.assertTrue((self.folder / number.name / "runs/slope_0.5/checkpoints/latest").exists())
 
     def test_a_run_that_fails_is_named_and_the_others_go_on(self):
         sweep = self.write("vary: {contact.wall_friction: [-1, 0.3]}\nset: {run.until: 0.01}\n")

@@ -32,7 +32,10 @@ class Runner:
 
     def work(self):
         """Until all tasks are done or a signal asks to stop. Returns whether all are done."""
-        before = {number: signal.signal(number, self.stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        heeded = [signal.SIGINT, signal.SIGTERM]
+        if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:   # as nohup has it
+            heeded.append(signal.SIGHUP)
+        before = {number: signal.signal(number, self.stop) for number in heeded}
         try:
             while True:
                 self.collect()
