@@ -329,6 +329,24 @@ class Bisection(Folder):
         self.assertEqual(printed.getvalue(), "1 of 3 runs done, left about 9 s\n2 of 3 runs done, left about 5 s\n")
 
 
+class Failure(Folder):
+    def test_how_the_program_ended_where_it_does_not_say(self):
+        program = self.folder / "program"
+        for line, words in (
+            ("exit 7", "the program ended with exit code 7; see "), ("kill -9 $$", "the program was ended by signal 9; see "),
+            ("echo thalweg: no room. >&2; exit 1", "no room."),
+        ):
+            program.write_text(f"#!/bin/sh\n{line}\n")
+            program.chmod(0o755)
+            run = tasks_of(self.plan(), self.folder)[0].run
+            process = run.start(str(program))
+            process.wait()
+            run.ended(process.returncode)
+            run.release()
+            self.assertTrue(run.failure.startswith(words), run.failure)
+            run.remember(None)
+
+
 class AfterAnError(Folder):
     def test_runs_that_are_going_save_their_state_before_the_sweep_ends(self):
         program = self.folder / "program"

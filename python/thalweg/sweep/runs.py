@@ -145,9 +145,8 @@ class SweepRun:
     def ended(self, exit_code):
         """To be called when the process has ended."""
         if exit_code not in (0, *STOPPED):
-            self.remember(
-                complaint_in(self.output) or f"the program ended with exit code {exit_code}; see {self.output}"
-            )
+            how = f"ended with exit code {exit_code}" if exit_code > 0 else f"was ended by signal {-exit_code}"
+            self.remember(complaint_in(self.output) or f"the program {how}; see {self.output}")
         self.look()
 
     def remember(self, failure):
