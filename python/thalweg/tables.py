@@ -1,6 +1,9 @@
 """Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`."""
 import csv
+import io
+import os
 import re
+import socket
 from pathlib import Path
 
 import numpy as np
@@ -34,12 +37,23 @@ def merged_rows(path, rows, needed=("run",)):
         merged += of_this or [row for row in kept if row["run"] == name]
     if not merged:
         raise RunFolderError(f"{path}: there is no run in this table and none to put into it; give run folders.")
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        headings = dict.fromkeys(heading for row in rows + merged for heading in row)
-        writer = csv.DictWriter(file, headings, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(merged)
+    stream = io.StringIO()
+    headings = dict.fromkeys(heading for row in rows + merged for heading in row)
+    writer = csv.DictWriter(stream, headings, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(merged)
+    replace_text(path, stream.getvalue())
     return merged
+
+
+def replace_text(path, text):
+    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one."""
+    temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
+    with open(temporary, "w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    temporary.replace(path)
 
 
 def read_series(path):

@@ -2,6 +2,7 @@
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import made_up_folder   # noqa: F401  finds the package
 from thalweg.errors import RunFolderError
@@ -27,6 +28,15 @@ class MergedRows(unittest.TestCase):
             with self.assertRaisesRegex(RunFolderError, "table.csv: there is no run"):
                 merged_rows(path, [])
             self.assertFalse(path.exists())
+
+    def test_a_table_is_kept_where_the_disk_is_full(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            merged_rows(path, [{"run": "a", "q": "1"}])
+            before = path.read_bytes()
+            with mock.patch("os.fsync", side_effect=OSError(28, "No space left on device")), self.assertRaises(OSError):
+                merged_rows(path, [{"run": "b", "q": "2"}])
+            self.assertEqual(path.read_bytes(), before)
 
     def test_a_table_of_something_else_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -11,13 +11,13 @@ import json
 import os
 import shlex
 import signal
-import socket
 import subprocess
 from pathlib import Path
 
 from thalweg.case_file import setting_of
 from thalweg.history import sessions_of, warnings_of
 from thalweg.sweep.inputs import SweepError, inputs_of
+from thalweg.tables import replace_text
 
 LONGEST_NAME = (
     150  # bytes: of the 255 that file systems allow, the rest is for the endings of the files beside the run folder
@@ -197,16 +197,6 @@ def locked(file):
     except OSError:
         pass
     return True
-
-
-def replace_text(path, text):
-    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one."""
-    temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
-    with open(temporary, "w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    temporary.replace(path)
 
 
 def die_with_parent():

@@ -5,8 +5,9 @@ import json
 import re
 
 from thalweg.sweep.plan import figure_of
-from thalweg.sweep.runs import DONE, WAITING, replace_text
+from thalweg.sweep.runs import DONE, WAITING
 from thalweg.sweep.tasks import result_columns
+from thalweg.tables import replace_text
 
 
 def write_tables(plan, tasks, units, folder):
