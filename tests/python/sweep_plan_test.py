@@ -188,6 +188,7 @@ class Points(Folder):
             ({"vary": {"a": {"from": 0.1, "to": 0.5}}}, "takes a count or a step"),
             ({"vary": {"a": {"from": 1, "to": 6, "spacing": "log"}}}, "takes a count"),
             ({"vary": {"a": {"from": 1, "to": 6, "step": 1, "count": 2}}}, "a count or a step; remove one"),
+            ({"vary": {"a": {"from": 0, "to": 1e9, "step": 1e-300}}}, "give at most 100000"),
             ({"vary": {"a": {"from": 1, "to": math.inf}}}, "inf is not a number"),
             ({"vary": {1: [2]}}, "1 is not a key of the case"),
             ({"set": {"a": datetime.date(2026, 1, 1)}}, "neither a number nor text"),

@@ -295,7 +295,8 @@ def stepped(key, start, stop, given):
     step = number(f"{key}.step", given.get("step", 1))
     if step <= 0.0 or stop < start:
         raise SweepError(f"{key}: a range goes from a smaller to a larger value in steps above 0.")
-    return [rounded(start + n * step) for n in range(limited(key, int((stop - start) / step * (1.0 + 1e-12)) + 1))]
+    steps = min((stop - start) / step * (1.0 + 1e-12), 1e15)   # which may be infinite
+    return [rounded(start + n * step) for n in range(limited(key, int(steps) + 1))]
 
 
 def limited(key, count):
