@@ -29,7 +29,8 @@ def memory_needed(report):
 
 
 def runs_at_a_time(ranks, needed):
-    """ranks: of a run; needed: its memory, of the largest, bytes. Says so where the memory is what allows fewer than the cores do."""
+    """ranks: of a run; needed: the memory of the largest, bytes. Says so where the memory is what allows fewer than the
+    cores do."""
     by_cores = max(1, int(told("THALWEG_CORES")) // ranks)
     there = told("THALWEG_MEMORY")
     by_memory = max(1, int(there // needed)) if needed > 0.0 else by_cores
