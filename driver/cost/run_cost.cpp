@@ -101,7 +101,7 @@ Cost cost_of(const Case& c, double bandwidth) {
   const double rows = static_cast<double>(grain_rows(c)), most = static_cast<double>(most_rows(c));
   const double growth = rows > 0.0 ? 0.5 * (rows + most) / rows : 1.0;  // in the mean, of grains that are supplied
   cost.grain_steps = growth * rows * static_cast<double>(grain_steps(c)) * cost.steps;
-  const double of_memory = has_fluid(c) ? cell_cost * bytes_per_cell_update(bytes_per_value(c)) / bandwidth : 0.0;
+  const double of_memory = bandwidth > 0.0 ? cell_cost * bytes_per_cell_update(bytes_per_value(c)) / bandwidth : 0.0;
   const double precision = c.fluid.precision == coupling::Precision::single ? 1.0 : cost_of_doubles;
   cost.core_seconds =
       cost.cell_updates * std::max(of_memory, precision * cell_seconds) +

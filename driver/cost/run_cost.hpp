@@ -13,7 +13,7 @@ struct Cost {
   double grain_steps;   // spheres, those of clumps among them, times sub-steps
   double core_seconds;  // one core
 };
-// bandwidth: bytes/s of one core's memory (machine.hpp); of no account without a fluid.
+// bandwidth: bytes/s of one core's memory (machine.hpp); 0: it does not bound the speed.
 Cost cost_of(const Case& c, double bandwidth);
 
 // Memory, bytes.

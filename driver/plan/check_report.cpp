@@ -280,7 +280,7 @@ void add_cost(const Case& c, double bandwidth, Lines& lines) {
   lines.push_back(fmt::format(
       "time       about {} on one core like this one{}, within a third; --ranks N,N,... measures it and predicts it on "
       "more cores",
-      loop::clock_text(cost.core_seconds), has_fluid(c) ? fmt::format(" ({:.3g} GB/s)", bandwidth * 1e-9) : ""));
+      loop::clock_text(cost.core_seconds), bandwidth > 0.0 ? fmt::format(" ({:.3g} GB/s)", bandwidth * 1e-9) : ""));
 }
 
 std::string verdict_text(const Case& c, std::size_t warnings) {
