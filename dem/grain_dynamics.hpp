@@ -113,6 +113,7 @@ public:
   // fluid_velocity: m/s, at a point that this rank owns, for those that come in with it; empty: they come in at rest.
   // Without sinks and supplies it does nothing; with them it is up to three reductions. Collective.
   bool turn_over(const std::function<Vec3(const Vec3& point)>& fluid_velocity = {});
+  bool has_turnover() const { return turnover_.any(); }  // supplies or sinks
 
   // Prepares the sub-steps of a fluid step: wraps positions and, if some grain may leave its half skin during them,
   // moves grains to the rank of their centre and rebuilds ghosts and neighbour list. True if slots changed. Throws

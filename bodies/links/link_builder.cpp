@@ -22,6 +22,7 @@ void LinkBuilder::update(const BodyMap& map, LinkTable& table) {
   stale_tiles_.resize(map.bodies().size());
   for (const CellChange& change : map.changes()) mark_around(change);
   for (const Index3& cell : enclosed_.update(map)) mark_links_of(cell);
+  if (solids_) mark_shortened();
   std::sort(stale_.begin(), stale_.end());
   for (const int slot : stale_) {
     if (map.bodies()[slot].is_free())
@@ -75,6 +76,20 @@ void LinkBuilder::mark_links_of(const Index3& at) {
   for (int i = 1; i < D3Q19::directions; ++i) {
     const std::int32_t body = cells_.body(cell + indexing.offset(i));
     if (body != CellMap::fluid) mark(body, tiles_.tile_of(at[1], at[2]));
+  }
+}
+
+// Where a solid that moves enters one that stands still, it shortens links of the latter, although no cell changes
+// hands.
+void LinkBuilder::mark_shortened() {
+  for (const auto& [solid, tile] : shortened_) mark(solid, tile);
+  shortened_.clear();
+  for (int solid = 0; solid < solids_->count(); ++solid) {
+    if (!solids_->moves(solid)) continue;
+    for (const auto& [standing, tile] : solids_->shortened_by(solid)) {
+      mark(standing, tile);
+      shortened_.emplace_back(standing, tile);
+    }
   }
 }
 

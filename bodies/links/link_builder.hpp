@@ -1,7 +1,7 @@
 // Keeps the cut links of all bodies: every lattice line from an owned fluid cell into a cell that a body covers. Those
 // of spheres and of solids that stand still depend on the map of the cells alone, so only those around cells that
 // changed hands are found anew: the links of a body in one tile at a time. Those of solids that move are all found
-// anew.
+// anew, and so are those of solids that stand still where one that moves shortens them or did so before.
 #pragma once
 
 #include "bodies/links/solids.hpp"
@@ -33,6 +33,7 @@ private:
 
   void mark_around(const CellChange& change);
   void mark_links_of(const Index3& cell);
+  void mark_shortened();
   void mark(std::int32_t slot, int tile);
   void rebuild(int slot, const MappedBody& sphere, LinkTable& table);
   void rebuild_solid(int slot, const std::vector<int>& tiles, LinkTable& table);
@@ -46,6 +47,7 @@ private:
   EnclosedCells enclosed_;
   std::vector<std::vector<int>> stale_tiles_;  // of each slot
   std::vector<int> stale_;                     // slots that have any
+  std::vector<std::pair<int, int>> shortened_;  // solids that stand still, with tiles where one that moves shortens links
   std::vector<LocalCell> xs_, ys_;             // scratch from here on
   std::vector<Link> links_;
   std::vector<LinkCrossing> crossings_;

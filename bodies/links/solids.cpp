@@ -257,6 +257,18 @@ double Solids::distance(const Group& group, std::ptrdiff_t cell, int direction) 
   return cut == group.cut.end() || cut->cell != cell ? not_met : cut->distances[static_cast<std::size_t>(direction)];
 }
 
+std::vector<std::pair<int, int>> Solids::shortened_by(int moving_solid) const {
+  CHECK(moves(moving_solid));
+  std::vector<std::pair<int, int>> found;
+  for (const CutCell& cut : group(moving_solid).cut)
+    for (int i = 1; i < D3Q19::directions; ++i) {
+      const std::int32_t body = cells_.body(cut.cell + cells_.indexing().offset(i));
+      if (cut.distances[static_cast<std::size_t>(i)] > 1.0 || body < 0 || body >= count() || moves(body)) continue;
+      found.emplace_back(body, tiles_.tile_of(cut.local[1], cut.local[2]));
+    }
+  return found;
+}
+
 void Solids::find_links(int solid, int tile, const EnclosedCells& enclosed, std::vector<Link>& links,
                         std::vector<LinkCrossing>& crossings) const {
   const std::vector<CutCell>& all = group(solid).cut;

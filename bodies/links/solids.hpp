@@ -74,7 +74,11 @@ public:
   // The tiles with cells beside a solid that moves, each once.
   std::vector<int> tiles(int solid) const;
 
-  // The links of a solid in a tile and where they meet it, from the cells that are fluid now.
+  // The solids that stand still and have links which a solid that moves shortens at its present place, each with the
+  // tile of these links, as (solid, tile), in no order, once or more.
+  std::vector<std::pair<int, int>> shortened_by(int moving_solid) const;
+
+  // The links of a solid in a tile and where they meet it or another solid before, from the cells that are fluid now.
   void find_links(int solid, int tile, const EnclosedCells& enclosed, std::vector<Link>& links,
                   std::vector<LinkCrossing>& crossings) const;
 

@@ -38,6 +38,8 @@ public:
   // After grains have been taken from a run on another lattice, what they keep in its units means nothing.
   void forget_lattice_units();
 
+  // Gives the bodies the present motions of their grains, with which the cells of grains that leave are refilled.
+  void update_motions();
   // The motions of a step, and the cells of those that moved beyond the tolerance. slots_changed: whether grains have
   // come into reach of this rank or left it.
   void move_bodies(bool slots_changed);
@@ -54,7 +56,6 @@ private:
   }
   Vec3 lattice_position(const Vec3& position) const { return position / units_.spacing; }
   void synchronise_slots();
-  void update_motions();
   void update_cells();
   void collect();
   void apply();

@@ -161,6 +161,7 @@ void LatticeSystem<Real>::move_bodies() {
   bool slots_changed = false;
   if (grains_) {
     const auto scope = timer_.measure(phases_.grains);
+    if (grains_->has_turnover()) grain_bodies_->update_motions();
     const bool turned_over = grains_->turn_over([this](const Vec3& point) { return velocity_at(point); });
     if (turned_over) grain_bodies_->begin_where_grains_are();
     if (turned_over) grain_bodies_->set_surroundings(bodies_.reference_density());

@@ -40,6 +40,7 @@ struct WaterBox {
   std::vector<dem::GrainSeed> seeds;
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
+  std::vector<dem::Sink> sinks;
   std::vector<bodies::SolidShape> solids;            // m
   std::vector<dem::PrescribedMotion> solid_motions;  // of the first of them
 };
@@ -113,6 +114,7 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
     return Vec3(mass * gravity.x(), mass * gravity.y(), (mass - displaced) * gravity.z());
   };
   g.assemblies = box.assemblies;
+  g.sinks = box.sinks;
   std::vector<bodies::SolidShape> solids;
   p.solid_motions = box.solid_motions;
   for (const bodies::SolidShape& shape : box.solids) {
