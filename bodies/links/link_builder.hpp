@@ -47,8 +47,9 @@ private:
   EnclosedCells enclosed_;
   std::vector<std::vector<int>> stale_tiles_;  // of each slot
   std::vector<int> stale_;                     // slots that have any
-  std::vector<std::pair<int, int>> shortened_;  // solids that stand still, with tiles where one that moves shortens links
-  std::vector<LocalCell> xs_, ys_;             // scratch from here on
+  std::vector<std::pair<int, int>>
+      shortened_;                   // solids that stand still, with tiles where one that moves shortens links
+  std::vector<LocalCell> xs_, ys_;  // scratch from here on
   std::vector<Link> links_;
   std::vector<LinkCrossing> crossings_;
 };

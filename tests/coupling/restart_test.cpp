@@ -1,4 +1,4 @@
-// A restart after any step goes on with the same bits: what a system builds from its saved state is what another has kept
+// A restart after any step goes on with the same bits: what a system builds from its saved state is what another keeps
 // up to date. Each step of a run is also taken by a new system that has just loaded the state before it.
 #include "core/parallel/mpi_session.hpp"
 #include "tests/coupling/water_box.hpp"
@@ -39,7 +39,7 @@ TEST(Restart, MayComeBeforeTheStepInWhichAGrainLeaves) {
   expect_the_same_after_a_restart_at_any_step(box, 12);
 }
 
-// The moving sphere passes through the one at rest and shortens its links, also in steps in which no cell changes hands.
+// The moving sphere enters the one at rest and shortens its links, also in steps in which no cell changes hands.
 TEST(Restart, MayComeWhileASolidMovesThroughAnother) {
   WaterBox box;
   box.fluid_velocity = Vec3(0.2, 0.0, 0.0);
