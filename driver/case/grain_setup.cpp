@@ -62,14 +62,18 @@ std::vector<dem::Solid> solids_of(const Case& c, const dem::ContactParameters& c
   return solids;
 }
 
-// The box with its solids where they are at the start, for the placing of grains.
+// The box with its walls and solids where they are at the start, for the placing of grains.
 beds::PackingDomain keeping_clear(beds::PackingDomain ranks, const Case& c) {
-  if (c.solids.empty()) return ranks;
+  if (c.walls.empty() && c.solids.empty()) return ranks;
+  std::vector<dem::Plane> walls;
+  for (const beds::WallKeys& wall : c.walls) walls.push_back(plane_of(wall, {}));
   const std::vector<dem::Solid> solids = solids_of(c, {});
   std::vector<dem::PlacedSolid> placed;
   for (const dem::Solid& solid : solids) placed.emplace_back(solid, 0.0, 0.0);
-  ranks.keep_clear_of([solids, placed, box = ranks.box()](const Vec3& centre, double radius) {
-    return depth_in_solids(centre, radius, box, placed, solids).depth > 0.0;
+  ranks.keep_clear_of([walls, solids, placed, box = ranks.box()](const Vec3& centre, double radius) {
+    const auto reaches = [&](const dem::Plane& wall) { return wall.seen_from(centre, box).distance < radius; };
+    return std::any_of(walls.begin(), walls.end(), reaches) ||
+           depth_in_solids(centre, radius, box, placed, solids).depth > 0.0;
   });
   return ranks;
 }

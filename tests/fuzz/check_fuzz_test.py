@@ -2,7 +2,7 @@
 """Cases as people mistype them: `thalweg check` of mutations of every shipped case either reports or refuses in one
 sentence.
 
-Called by ctest: check_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No
+Called by ctest: check_fuzz_test.py THALWEG MPIEXEC NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No
 crash, no hang, and what is refused names the file; the first ten failures are printed with the case that shows them.
 """
 import random
@@ -15,8 +15,8 @@ import yaml
 
 from mutations import ROOT, CaseLoader, limit_memory, mutated, text_of
 
-THALWEG, NUMBER = sys.argv[1], int(sys.argv[2])
-SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
+SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 SECONDS = 30   # a check takes a tenth of a second
 
 

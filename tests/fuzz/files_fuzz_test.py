@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Damaged files: cases, surfaces, beds, checkpoints, records and what else a restart reads.
 
-Called by ctest: files_fuzz_test.py THALWEG NUMBER [SEED]. Each of NUMBER damaged files (damage.py) is given to the
+Called by ctest: files_fuzz_test.py THALWEG MPIEXEC NUMBER [SEED]. Each of NUMBER damaged files (damage.py) is given to the
 program, which must end within ten seconds of a core and a gigabyte: it refuses the file in one sentence with its name
 (exit code 2), or ends well (0) with the results of the whole file. So nothing that a damaged file means is taken in
 silence. The exceptions: a case in which a digit or a line is another is another case; a restart reads only what it goes
@@ -20,8 +20,8 @@ from pathlib import Path
 import damage
 from damage import contents_of_hdf5
 
-THALWEG, NUMBER = sys.argv[1], int(sys.argv[2])
-SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
+SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 SECONDS, LATE, BYTES = 10, 100, 1 << 30
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from stl_box import write_box

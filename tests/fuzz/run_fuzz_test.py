@@ -2,7 +2,7 @@
 """Cases as people mistype them: `thalweg check` and `thalweg run` are of one opinion about every mutation of small
 cases.
 
-Called by ctest: run_fuzz_test.py THALWEG NUMBER_OF_MUTATIONS [SEED]. The mutations are those of check_fuzz_test.py. A
+Called by ctest: run_fuzz_test.py THALWEG MPIEXEC NUMBER_OF_MUTATIONS [SEED]. The mutations are those of check_fuzz_test.py. A
 case that check refuses is refused by run in the same words, and nothing is written; a case that check reports on runs
 for two steps, or breaks down in the run (exit code 1, one sentence and a summary), but is not refused. No crash, no
 hang; mutations of sizes that would take more memory than a test has are not run, and those that would take more time
@@ -20,8 +20,8 @@ import yaml
 
 from mutations import CaseLoader, limit_memory, mutated, text_of
 
-THALWEG, NUMBER = sys.argv[1], int(sys.argv[2])
-SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
+SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 SECONDS = 60
 MOST_UPDATES = 3e7   # cell updates and grain-steps that a run may have; ten times as many as a step may
 STOPPED = 3          # exit code of a run that ends before its time
