@@ -48,8 +48,9 @@ void fill_in_profile(Case& c) {
   if (open.shear_velocity) profile.shear_velocity.reset();
   if (open.roughness) profile.roughness.reset();
   const FlowEstimate flow = flow_estimate(c);
-  const auto roughness = [&, given = open.roughness ? std::nullopt : profile.roughness](double shear_velocity) {
-    if (given) return *given;
+  const double given = profile.roughness.value_or(0.0);  // 0: it follows from the flow
+  const auto roughness = [&](double shear_velocity) {
+    if (given > 0.0) return given;
     return c.grains.empty() ? smooth_roughness(c.fluid.kinematic_viscosity, std::abs(shear_velocity))
                             : largest_size(c) / roughness_a_diameter;
   };

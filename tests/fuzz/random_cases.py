@@ -7,8 +7,8 @@ borders between ranks, meet walls and solids, come in and leave within the few s
 
 SPACING = 0.8e-3                  # m
 SIZE = (0.0288, 0.0192, 0.024)    # m: 36 x 24 x 30 cells
-STEP = 1.0e-4                     # s, of a fluid
-STEPS = 60
+STEP, STEPS = 1.0e-4, 60          # s, of a fluid
+DRY_STEP, DRY_STEPS = 1.0e-5, 600
 
 
 def maybe(chance, content, key, value, odds=0.5):
@@ -305,6 +305,80 @@ def output(chance, case, step, end):
 
 # ---- whole cases
 
+def make_disks(case):
+    """Two dimensions: single grains that move in the plane of x and z."""
+    case["disks"] = {"thickness": 4e-3}
+    faces = case["domain"]["boundaries"]
+    faces["y"] = "periodic"
+    for face in [face for face in faces if face in ("y_low", "y_high")]:
+        del faces[face]
+    for face in faces.values():
+        if isinstance(face, dict):
+            face["velocity"][1] = 0.0
+            face.pop("oscillation", None)
+    case["grains"] = [
+        {"diameter": grain["diameter"], "density": 2550, "count": min(grain["count"], 4), "placement": grain["placement"]}
+        for grain in case["grains"]
+    ]
+
+
+def add_water(chance, case):
+    faces = case["domain"]["boundaries"]
+    case["fluid"] = fluid(chance, faces)
+    case["initial"] = {"fluid": start_of_fluid(chance, faces)}
+    maybe(chance, case, "solids", lambda: solids(chance, True), 0.4)
+
+
+def add_grains(chance, case):
+    water = "fluid" in case
+    case["grains"] = populations(chance, water)
+    case["contact"] = contact(chance, water)
+    if case["system"] != "model_fluid":
+        turnover(chance, case, case["domain"]["boundaries"])
+    if not water and not {"supplies", "sinks"} & set(case) and chance.random() < 0.25:
+        make_disks(case)
+
+
+def add_coupling(chance, case):
+    faces = case["domain"]["boundaries"]
+    case["coupling"] = coupling(chance, case)
+    if all(is_periodic(faces, axis) for axis in range(3)) and not {"supplies", "sinks"} & set(case):
+        maybe(chance, case["gravity"], "mode", lambda: "balanced")
+    elif not is_periodic(faces, 2) and faces.get("x_high") != "pressure_outlet":
+        maybe(chance, case["gravity"], "mode", lambda: "full", 0.2)
+
+
+def add_model_fluid(chance, case, step):
+    case["gravity"] = {"magnitude": 9.8}
+    content = {"shields_number": 0.2, "reynolds_number": chance.choice([0.5, 5]),
+               "drag": chance.choice(["linear", "quadratic"])}
+    maybe(chance, content, "lift_ratio", lambda: 0.3)
+    maybe(chance, content, "ramp", lambda: {"every": 3 * step, "hold": 1, "largest_speed": 50}, 0.3)
+    case["model_fluid"] = content
+
+
+def add_obstacles(chance, case):
+    """To dry grains."""
+    if "disks" not in case:
+        maybe(chance, case, "solids", lambda: solids(chance, False), 0.3)
+        maybe(chance, case, "walls", lambda: planes(chance), 0.3)
+
+
+def run(chance, case, step, end):
+    content = {"until": end}
+    if "fluid" in case:
+        if case["gravity"].get("mode") != "full":
+            maybe(chance, content, "ramp", lambda: end / 5, 0.2)
+        return content
+    content["time_step"] = step
+    if case["system"] == "grains":
+        if not any("shape" in grain for grain in case["grains"]):
+            maybe(chance, content, "grain_integrator", lambda: "gear", 0.3)
+        maybe(chance, content, "until_at_rest",
+              lambda: {"largest_speed": 0.1, "largest_acceleration": 1, "quantile": 0.7}, 0.3)
+    return content
+
+
 def random_case(chance):
     system = chance.choice(["resolved", "resolved", "resolved", "grains", "grains", "model_fluid", "fluid"])
     water = system in ("resolved", "fluid")
@@ -313,36 +387,19 @@ def random_case(chance):
         faces = boundaries(chance, water)
     case = {"system": system, "name": "random", "domain": {"size": list(SIZE), "spacing": SPACING, "boundaries": faces},
             "gravity": {"magnitude": 9.8, "slope": chance.choice([0, 0.05, 0.3])}}
-    step = {"resolved": STEP, "fluid": STEP, "grains": 1e-5, "model_fluid": 1e-5}[system]
-    end = (STEPS if water else 10 * STEPS) * step
+    step = STEP if water else DRY_STEP
+    end = (STEPS if water else DRY_STEPS) * step
     if water:
-        case["fluid"] = fluid(chance, faces)
-        case["initial"] = {"fluid": start_of_fluid(chance, faces)}
-        maybe(chance, case, "solids", lambda: solids(chance, True), 0.4)
+        add_water(chance, case)
     if system != "fluid":
-        case["grains"] = populations(chance, water)
-        case["contact"] = contact(chance, water)
-    if system in ("resolved", "grains"):
-        turnover(chance, case, faces)
+        add_grains(chance, case)
     if system == "resolved":
-        case["coupling"] = coupling(chance, case)
-        if all(is_periodic(faces, axis) for axis in range(3)) and not {"supplies", "sinks"} & set(case):
-            maybe(chance, case["gravity"], "mode", lambda: "balanced")
-        elif not is_periodic(faces, 2) and faces.get("x_high") != "pressure_outlet":
-            maybe(chance, case["gravity"], "mode", lambda: "full", 0.2)
+        add_coupling(chance, case)
     if system == "model_fluid":
-        case["gravity"] = {"magnitude": 9.8}
-        case["model_fluid"] = {"shields_number": 0.2, "reynolds_number": chance.choice([0.5, 5]),
-                               "drag": chance.choice(["linear", "quadratic"])}
-    case["run"] = {"until": end}
-    if not water:
-        case["run"]["time_step"] = step
+        add_model_fluid(chance, case, step)
     if system == "grains":
-        maybe(chance, case["run"], "grain_integrator", lambda: "gear", 0.2)
-        maybe(chance, case, "solids", lambda: solids(chance, False), 0.3)
-        maybe(chance, case, "walls", lambda: planes(chance), 0.3)
-    if water and case["gravity"].get("mode") != "full":
-        maybe(chance, case["run"], "ramp", lambda: end / 5, 0.2)
+        add_obstacles(chance, case)
+    case["run"] = run(chance, case, step, end)
     case["analysis"] = analysis(chance, case, step, end)
     case["output"] = output(chance, case, step, end)
     return case
