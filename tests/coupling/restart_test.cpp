@@ -45,7 +45,9 @@ TEST(Restart, MayComeWhileASolidMovesThroughAnother) {
   box.fluid_velocity = Vec3(0.2, 0.0, 0.0);
   box.solids = {bodies::SolidSphere{Vec3(9.7e-3, 6.8e-3, 11.4e-3), 3.5e-3},
                 bodies::SolidSphere{Vec3(8.7e-3, 9.9e-3, 10.3e-3), 3.3e-3}};
-  box.solid_motions = {{.velocity = Vec3(-0.015, 0.016, -0.023)}};
+  dem::PrescribedMotion slow;
+  slow.velocity = Vec3(-0.015, 0.016, -0.023);
+  box.solid_motions = {slow};
   expect_the_same_after_a_restart_at_any_step(box, 60);
 }
 
