@@ -23,7 +23,7 @@ struct Obstacles {
 Obstacles obstacles_of(const Case& c);
 
 // Volume (m^3) of the solids that stand still below layers + 1 heights from the floor of the box to its top, as
-// analysis::BedObstacles has it; places where two overlap count twice. Empty: there are none.
+// analysis::BedObstacles has it; places where several overlap count once. Empty: there are none.
 using SolidsBelow = std::function<std::vector<double>(int layers)>;
 SolidsBelow solids_below(const Case& c);
 

@@ -2,6 +2,7 @@
 
 #include "driver/estimate/bed_flow.hpp"
 #include "tests/driver/case_texts.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -116,6 +117,28 @@ TEST(Obstacles, SolidsTakeTheirRoomInTheBed) {
   const Case water = testing::read_text(defaults_yaml("fluid"));  // with a sphere
   EXPECT_TRUE(solids_below(water));
   EXPECT_EQ(settled_height(water), 0.0);
+}
+
+// A block 20 mm long and 10 mm wide; the columns that its edges cross count or not, a hundredth at most.
+TEST(Obstacles, AreThoseOfTheCaseThatIsAsked) {
+  const auto block = [](double height, const char* box_height) {
+    Case c = testing::read_text(bed_with(""), {"domain.size.2=" + std::string(box_height)});
+    c.solids.emplace_back();
+    c.solids.back().surface = thalweg::test::box_mesh(Vec3(0.02, 0.02, 0.0), Vec3(0.04, 0.03, height));
+    return c;
+  };
+  const auto expect_below = [](const Case& c, int layers, const std::vector<double>& expected) {
+    const std::vector<double> found = solids_below(c)(layers);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 0.01 * expected.back()) << k;
+  };
+  const Case low = block(0.007, "0.042"), high = block(0.014, "0.042"), in_high_box = block(0.014, "0.056");
+  for (int again = 0; again < 2; ++again) {
+    expect_below(low, 6, {0.0, 1.4e-6, 1.4e-6, 1.4e-6, 1.4e-6, 1.4e-6, 1.4e-6});
+    expect_below(high, 6, {0.0, 1.4e-6, 2.8e-6, 2.8e-6, 2.8e-6, 2.8e-6, 2.8e-6});
+    expect_below(in_high_box, 6, {0.0, 0.2e-6 * 28.0 / 3.0, 2.8e-6, 2.8e-6, 2.8e-6, 2.8e-6, 2.8e-6});
+    expect_below(in_high_box, 4, {0.0, 2.8e-6, 2.8e-6, 2.8e-6, 2.8e-6});
+  }
 }
 
 // Through a periodic face, and not through a wall; free grains are never obstacles.
