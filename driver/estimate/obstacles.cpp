@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -89,20 +90,25 @@ double longest_free_grain(const Case& c) {
   return longest;
 }
 
-// volume_below(), which takes a twentieth of a second. Keeps the last answer: the estimates of a case ask for the same
-// one a hundred times.
-const std::vector<double>& kept_volume_below(const std::vector<TriangleMesh>& surfaces, const PeriodicBox& box,
-                                             int layers) {
-  static struct {
+// volume_below(), which takes a twentieth of a second. Keeps the last answers: the estimates of a case ask for the same
+// ones a hundred times.
+std::vector<double> kept_volume_below(const std::vector<TriangleMesh>& surfaces, const PeriodicBox& box, int layers) {
+  struct Answer {
     std::vector<TriangleMesh> surfaces;
     PeriodicBox box;
-    int layers = 0;
+    int layers;
     std::vector<double> volumes;
-  } last;
-  if (layers != last.layers || box.size != last.box.size || box.periodic != last.box.periodic ||
-      surfaces != last.surfaces)
-    last = {surfaces, box, layers, volume_below(surfaces, box, layers)};
-  return last.volumes;
+  };
+  static std::deque<Answer> answers;
+  constexpr std::size_t most_answers = 8;
+  const auto known = std::find_if(answers.begin(), answers.end(), [&](const Answer& answer) {
+    return answer.layers == layers && answer.box.size == box.size && answer.box.periodic == box.periodic &&
+           answer.surfaces == surfaces;
+  });
+  if (known != answers.end()) return known->volumes;
+  if (answers.size() == most_answers) answers.pop_front();
+  answers.push_back({surfaces, box, layers, volume_below(surfaces, box, layers)});
+  return answers.back().volumes;
 }
 
 }  // namespace
