@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <experimental/simd>
+#include <utility>
 #include <vector>
 
 namespace thalweg::bodies {
@@ -45,11 +46,10 @@ private:
   const lbm::RowTiles& tiles_;
   const Solids* solids_;  // null: none
   EnclosedCells enclosed_;
-  std::vector<std::vector<int>> stale_tiles_;  // of each slot
-  std::vector<int> stale_;                     // slots that have any
-  std::vector<std::pair<int, int>>
-      shortened_;                   // solids that stand still, with tiles where one that moves shortens links
-  std::vector<LocalCell> xs_, ys_;  // scratch from here on
+  std::vector<std::vector<int>> stale_tiles_;   // of each slot
+  std::vector<int> stale_;                      // slots that have any
+  std::vector<std::pair<int, int>> shortened_;  // what Solids::shortened_by() said in the last update
+  std::vector<LocalCell> xs_, ys_;              // scratch from here on
   std::vector<Link> links_;
   std::vector<LinkCrossing> crossings_;
 };

@@ -264,7 +264,8 @@ std::vector<std::pair<int, int>> Solids::shortened_by(int moving_solid) const {
     for (int i = 1; i < D3Q19::directions; ++i) {
       const std::int32_t body = cells_.body(cut.cell + cells_.indexing().offset(i));
       if (cut.distances[static_cast<std::size_t>(i)] > 1.0 || body < 0 || body >= count() || moves(body)) continue;
-      found.emplace_back(body, tiles_.tile_of(cut.local[1], cut.local[2]));
+      const std::pair<int, int> place(body, tiles_.tile_of(cut.local[1], cut.local[2]));
+      if (found.empty() || found.back() != place) found.push_back(place);
     }
   return found;
 }

@@ -17,12 +17,12 @@ def maybe(chance, content, key, value, odds=0.5):
         content[key] = value()
 
 
-def corners(chance, low=(0, 0, 0), high=SIZE):
+def corners(chance):
     """A region of at least a third of each side."""
     region = {"lower": [], "upper": []}
-    for a, b in zip(low, high):
-        length = (b - a) * chance.uniform(0.34, 1)
-        start = a + chance.uniform(0, b - a - length)
+    for side in SIZE:
+        length = side * chance.uniform(0.34, 1)
+        start = chance.uniform(0, side - length)
         region["lower"].append(start)
         region["upper"].append(start + length)
     return region

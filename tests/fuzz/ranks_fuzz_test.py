@@ -46,7 +46,7 @@ def layout_of(ranks, chance):
     ])
 
 
-def disagreement(case, end, folder, chance):
+def disagreement(case, folder, chance):
     """Which runs of a case differ and where; empty if none do, None if the case is refused."""
     path = folder / "case.yaml"
     path.write_text(yaml.safe_dump(case, sort_keys=False))
@@ -59,7 +59,7 @@ def disagreement(case, end, folder, chance):
     layout = layout_of(n, chance)
     runs = [
         (["run", path, "--out", whole], 1), (["run", path, "--out", several, "--layout", layout], n),
-        (["run", path, "--out", parts, "--until", end / 2], first), (["run", path, "--restart", parts], second),
+        (["run", path, "--out", parts, "--until", case["run"]["until"] / 2], first), (["run", path, "--restart", parts], second),
     ]
     for arguments, ranks in runs:
         done = thalweg(*arguments, ranks=ranks)
@@ -80,7 +80,7 @@ def main():
         chance = random.Random(f"{SEED} {number}")
         case = random_case(chance)
         with tempfile.TemporaryDirectory() as folder:
-            wrong = disagreement(case, case["run"]["until"], Path(folder), chance)
+            wrong = disagreement(case, Path(folder), chance)
             refused += wrong is None
             if wrong:
                 text = (Path(folder) / "case.yaml").read_text() if len(failures) < 3 else ""

@@ -26,7 +26,7 @@ solids: [{sphere: {centre: [0.045, 0.02, 0.04], radius: 6.0e-3}}]
 contact: {restitution: 0.4}
 run: {until: 1.0e-3}
 )";
-  const Case c = testing::read_text(text, {});
+  const Case c = testing::read_text(text);
   const PeriodicBox box = grain_box(c);
   const dem::GrainSeeds seeds = grain_seeds(c);
   ASSERT_EQ(seeds.grains.size(), 80);
