@@ -96,15 +96,22 @@ struct Packing {
     parameters = {radii[0], 2.0 * radii[0], 0.01, disks, true};
   }
 
-  // Centres and radii of all images of grains that reach into a sphere.
-  std::vector<std::pair<Vec3, double>> images_near(const Vec3& centre, double radius) const {
-    std::vector<std::pair<Vec3, double>> near;
+  // In plain numbers, relative to a point: the count below takes millions of them, and vectors ten times as long under
+  // sanitizers.
+  struct Sphere {
+    double x, y, z, radius;
+  };
+
+  // All images of grains that reach into a sphere, relative to its centre.
+  std::vector<Sphere> images_near(const Vec3& centre, double radius) const {
+    std::vector<Sphere> near;
     const int across = parameters.disks ? 0 : 2;
     for (std::size_t grain = 0; grain < store.total(); ++grain)
       for (int i = -2; i <= 2; ++i)
         for (int j = -across; j <= across; ++j) {
-          const Vec3 image = store.position[grain] + Vec3(i * box.size[0], j * box.size[1], 0.0);
-          if ((image - centre).norm() < radius + store.radius[grain]) near.emplace_back(image, store.radius[grain]);
+          const Vec3 away = store.position[grain] + Vec3(i * box.size[0], j * box.size[1], 0.0) - centre;
+          if (away.norm() < radius + store.radius[grain])
+            near.push_back({away.x(), away.y(), away.z(), store.radius[grain]});
         }
     return near;
   }
@@ -116,17 +123,20 @@ struct Packing {
     const Vec3 step(1.0 / root, 1.0 / (root * root), 1.0 / (root * root * root));
     const double radius = store.radius[slot] + parameters.margin;
     const Vec3 centre = store.position[slot] + shift;
-    const std::vector<std::pair<Vec3, double>> spheres = images_near(centre, radius);
+    const std::vector<Sphere> spheres = images_near(centre, radius);
     std::int64_t inside = 0, solid = 0;
+    const auto at = [&](int k, int axis) {  // of point k, relative to the centre
+      const double turns = k * step[axis];
+      return radius * (2.0 * (turns - std::floor(turns)) - 1.0);
+    };
     for (int k = 1; k <= points; ++k) {
-      Vec3 offset = k * step;
-      for (int axis = 0; axis < 3; ++axis)
-        offset[axis] = radius * (2.0 * (offset[axis] - std::floor(offset[axis])) - 1.0);
-      if (parameters.disks) offset.y() = 0.0;
-      const Vec3 at = centre + offset;
-      if (offset.squaredNorm() > radius * radius || at.z() < 0.0) continue;
+      const double x = at(k, 0), y = parameters.disks ? 0.0 : at(k, 1), z = at(k, 2);
+      if (x * x + y * y + z * z > radius * radius || centre.z() + z < 0.0) continue;
       ++inside;
-      for (const auto& [image, r] : spheres) solid += (at - image).squaredNorm() < r * r;
+      for (const Sphere& s : spheres) {
+        const double dx = x - s.x, dy = y - s.y, dz = z - s.z;
+        solid += dx * dx + dy * dy + dz * dz < s.radius * s.radius;
+      }
     }
     return static_cast<double>(solid) / static_cast<double>(inside);
   }

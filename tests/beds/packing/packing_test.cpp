@@ -90,9 +90,9 @@ TEST(DensePacking, KeepsToItsRegionAndClearOfObstacles) {
 }
 
 TEST(DensePacking, RefusesWhatDoesNotFit) {
-  const PeriodicBox cube{Vec3::Constant(0.03), {true, true, true}};
+  const PeriodicBox cube{Vec3::Constant(0.015), {true, true, true}};
   const std::string message =
-      refusal([&] { dense_packing(cube, whole(cube), std::vector<double>(320, 2.5e-3), 0.0, 1); });
+      refusal([&] { dense_packing(cube, whole(cube), std::vector<double>(40, 2.5e-3), 0.0, 1); });
   EXPECT_NE(message.find("do not fit"), std::string::npos) << message;  // 0.78 of the volume
 }
 
