@@ -13,8 +13,8 @@ namespace {
 constexpr double no_grains = 1e-5;
 // Weight of the mean over a cell and its neighbours; where phi changes little, it adds half its square to the inertia.
 constexpr double share_of_neighbours = 0.02;
-// m/s, below which the drag function no longer changes with the velocity along the bed alone.
-constexpr double slowest = 1e-2;
+// Shear speeds of the mixture, below which the drag function no longer changes with the velocity along the bed alone.
+constexpr double slowest = 0.036;
 
 double positive(double fraction) { return 0.5 * (fraction + std::hypot(fraction, no_grains)); }
 
@@ -151,7 +151,8 @@ void ColumnEquations::find_fluxes() const {
 }
 
 double ColumnEquations::drag_speed(double along, double drift) const {
-  return std::hypot(along, parameters_.closures.speed == DragSpeed::total ? drift : slowest);
+  return std::hypot(along,
+                    parameters_.closures.speed == DragSpeed::total ? drift : slowest * parameters_.shear_speed());
 }
 
 // The solid fraction that the stress on the faces accelerates: in a cell with hardly any grains beside one with many,

@@ -38,7 +38,8 @@ void describe(SectionVisitor& visit, HeightKeys& height) {
   visit.choice("start", height.start, {.meaning = "state at the start"});
 }
 
-static void describe_rheology(SectionVisitor& visit, Rheology& r) {
+static void describe_rheology(SectionVisitor& visit, ClosureKeys& keys) {
+  Rheology& r = keys.closures.rheology;
   visit.real("static_friction", r.static_friction, {.meaning = "mu_1", .above = 0.0});
   visit.real("limit_friction", r.limit_friction, {.meaning = "mu_2, of fast flow", .above = 0.0});
   visit.require(r.limit_friction > r.static_friction, "limit_friction",
@@ -47,12 +48,19 @@ static void describe_rheology(SectionVisitor& visit, Rheology& r) {
              {.meaning = "phi_m: solid fraction of grains that begin to flow", .above = 0.0, .below = 0.75});
   visit.real("friction_scale", r.friction_scale, {.meaning = "b", .above = 0.0});
   visit.real("dilation", r.dilation, {.meaning = "a", .above = 0.0});
-  visit.real("elastic_modulus", r.elastic_modulus,
-             {.unit = "Pa", .meaning = "pressure of grains at rest over phi - phi_m", .above = 0.0});
+  visit.real("elastic_modulus", keys.elastic_modulus,
+             {.unit = "Pa",
+              .meaning = "pressure of grains at rest over phi - phi_m; default: 2633 (rho_s - rho_f) g d",
+              .above = 0.0,
+              .example = 2e5});
   visit.real("smallest_gap", r.smallest_gap,
              {.meaning = "lower limit of phi_m - phi in the pressure of flowing grains", .above = 0.0, .below = 0.1});
-  visit.real("creeping_rate", r.creeping_rate,
-             {.unit = "1/s", .meaning = "shear rate below which friction falls to zero", .above = 0.0});
+  visit.real("creeping_rate", keys.creeping_rate,
+             {.unit = "1/s",
+              .meaning = "shear rate below which friction falls to zero; default: 3.63e-5 v/d, v the smaller of "
+                         "sqrt(g' d) and g' d^2/nu, g' = (rho_s/rho_f - 1) g",
+              .above = 0.0,
+              .example = 2e-3});
 }
 
 static void describe_turbulence(SectionVisitor& visit, Turbulence& t) {
@@ -64,9 +72,10 @@ static void describe_turbulence(SectionVisitor& visit, Turbulence& t) {
   visit.choice("strain_norm", t.strain_norm, {.meaning = "norm of the rate of strain in the eddy viscosity"});
 }
 
-void describe(SectionVisitor& visit, Closures& closures) {
+void describe(SectionVisitor& visit, ClosureKeys& keys) {
+  Closures& closures = keys.closures;
   visit.section("rheology", {.meaning = "flow rule of the grains"},
-                [&](SectionVisitor& inside) { describe_rheology(inside, closures.rheology); });
+                [&](SectionVisitor& inside) { describe_rheology(inside, keys); });
   visit.section("turbulence", {.meaning = "stress of the fluid and drift"},
                 [&](SectionVisitor& inside) { describe_turbulence(inside, closures.turbulence); });
   visit.choice("drag", closures.drag.function, {.meaning = "drag function F"});
@@ -96,6 +105,9 @@ void describe(SectionVisitor& visit, CreepParameters& creep) {
 namespace {
 
 constexpr double most_cells = 1e5, fewest_in_water = 4.0;
+
+// 2e5 Pa and 2e-3/s of glass of 5 mm in water, over the weight of a layer and v/d.
+constexpr double modulus_over_weight = 2633.0, creeping_over_shear = 3.63e-5;
 
 Mixture mixture_of(const ContinuumKeys& keys) {
   return {keys.fluid.density, keys.fluid.density * keys.fluid.kinematic_viscosity, keys.grains.density,
@@ -143,7 +155,12 @@ SystemParameters system_parameters(const ContinuumKeys& keys, double gravity_x, 
   SystemParameters parameters;
   ColumnParameters& column = parameters.column;
   column.mixture = mixture_of(keys);
-  column.closures = keys.closures;
+  column.closures = keys.closures.closures;
+  const double gravity = std::hypot(gravity_x, gravity_z), d = column.mixture.diameter;
+  column.closures.rheology.elastic_modulus =
+      keys.closures.elastic_modulus.value_or(modulus_over_weight * column.mixture.excess_density() * gravity * d);
+  column.closures.rheology.creeping_rate =
+      keys.closures.creeping_rate.value_or(creeping_over_shear * column.mixture.shear_speed(gravity) / d);
   column.gravity_x = gravity_x;
   column.gravity_z = gravity_z;
   parameters.depth = depth_of(keys, gravity_x, gravity_z);

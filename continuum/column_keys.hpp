@@ -33,14 +33,21 @@ struct HeightKeys {
 };
 void describe(SectionVisitor& visit, HeightKeys& height);
 
-void describe(SectionVisitor& visit, Closures& closures);
+// The closures, with what in them follows from grains and gravity unless it is given.
+struct ClosureKeys {
+  Closures closures;
+  std::optional<double> elastic_modulus = {};  // Pa; else 2633 (rho_s - rho_f) g d
+  std::optional<double> creeping_rate = {};    // 1/s; else 3.63e-5 v/d, v the shear_speed() of the mixture
+  bool operator==(const ClosureKeys&) const = default;
+};
+void describe(SectionVisitor& visit, ClosureKeys& keys);
 void describe(SectionVisitor& visit, CreepParameters& creep);
 
 struct ContinuumKeys {
   FluidPhaseKeys fluid;
   GrainPhaseKeys grains;
   HeightKeys column;
-  Closures closures;
+  ClosureKeys closures;
   std::optional<CreepParameters> creep;
   bool operator==(const ContinuumKeys&) const = default;
 };

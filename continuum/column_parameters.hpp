@@ -6,6 +6,8 @@
 #include "continuum/mixture.hpp"
 #include "continuum/turbulence.hpp"
 
+#include <cmath>
+
 namespace thalweg::continuum {
 
 // Sign of the drift velocity. As printed, f_d has U_s - U_f + u_d, which carries grains up their own gradient.
@@ -31,6 +33,8 @@ struct ColumnParameters {
   double gravity_x = 0.0, gravity_z = 0.0;  // m/s^2: along the bed, downwards into it
   int cells = 0;
   double spacing = 0.0;  // m
+
+  double shear_speed() const { return mixture.shear_speed(std::hypot(gravity_x, gravity_z)); }  // m/s
 };
 
 }  // namespace thalweg::continuum

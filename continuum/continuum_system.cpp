@@ -16,19 +16,20 @@ namespace thalweg::continuum {
 namespace {
 
 // Tolerances of the integrator: the relative error of velocities, and the absolute errors of the solid fraction (1) and
-// of velocities (m/s). Grains of a bed at rest creep more slowly than creeping_rate times a cell, and their error must
-// stay below that.
-constexpr double relative_error = 1e-4, fraction_error = 1e-6, grain_error = 1e-7, fluid_error = 1e-5;
+// of velocities, in shear speeds of the mixture. Grains of a bed at rest creep more slowly than creeping_rate times a
+// cell, 3.6e-6 of them, and their error must stay below that.
+constexpr double relative_error = 1e-4, fraction_error = 1e-6, grain_error = 3.6e-7, fluid_error = 3.6e-5;
 
 constexpr double least_transport = 1e-4;  // q*, to which changes are compared where there is less
 constexpr int creep_points = 801;
 
 std::vector<Tolerance> tolerances_of(const ColumnParameters& column) {
   std::vector<Tolerance> tolerances;
+  const double shear = column.shear_speed();
   for (int i = 0; i < column.cells; ++i)
-    tolerances.insert(
-        tolerances.end(),
-        {{0.0, fraction_error * column.spacing}, {relative_error, grain_error}, {relative_error, fluid_error}});
+    tolerances.insert(tolerances.end(), {{0.0, fraction_error * column.spacing},
+                                         {relative_error, grain_error * shear},
+                                         {relative_error, fluid_error * shear}});
   return tolerances;
 }
 

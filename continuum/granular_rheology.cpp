@@ -37,9 +37,9 @@ double elastic_pressure(const Rheology& rheology, double fraction) {
 
 double granular_stress(const Rheology& rheology, const Mixture& mixture, double fraction, double pressure,
                        double shear_rate) {
-  constexpr double no_pressure = 1e-20;  // Pa, below which numbers divided by it would overflow
-  if (!(pressure > no_pressure) || shear_rate == 0.0) return 0.0;
+  constexpr double no_pressure = 1e-100;  // of eta g, below which numbers divided by it would overflow
   const double rate = std::abs(shear_rate);
+  if (!(pressure > no_pressure * mixture.viscosity * rate) || rate == 0.0) return 0.0;
   const double viscous = viscous_number(mixture, rate, pressure);
   const double mixed = mixed_number(viscous, inertial_number(mixture, rate, pressure));
   return friction(rheology, fraction, mixed, viscous) * pressure * shear_rate /

@@ -20,7 +20,7 @@ struct Rheology {
   double densest_fraction = 0.62;         // phi_m
   double friction_scale = 5.0;            // b
   double dilation = 0.70710678118654752;  // a = sqrt(2)/2
-  double elastic_modulus = 2e5;           // Pa, of grains denser than phi_m
+  double elastic_modulus = 2e5;           // Pa, of grains denser than phi_m; here and below of glass of 5 mm in water
   double smallest_gap = 2e-3;             // phi_m - phi is no smaller in the flow's pressure
   double creeping_rate = 2e-3;            // 1/s, below which friction falls to zero with the shear rate
   bool operator==(const Rheology&) const = default;

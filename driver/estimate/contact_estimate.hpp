@@ -13,7 +13,8 @@ struct Overlaps {
   // At the base of the settled bed: each grain carries the weight above its own d^2, a clump that above the square of
   // its nominal diameter on one member.
   double under_weight;
-  double in_impact;  // of two free grains, or of one with a wall, at `speed`
+  double in_impact;  // without damping, of two free grains (on a wall as hard as they are sqrt 2 more), or of one with
+                     // a softer wall, at `speed`
   double speed;      // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
 };
 Overlaps expected_overlaps(const Case& c);

@@ -84,7 +84,8 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
     def test_the_drag_is_that_of_the_law_chosen(self):
         # Eqs. 25 to 28 of Zhang et al. (2022) by hand, of the state after 5 s. Solid fractions are kept positive by
         # 1e-5 in a root with them, which changes those above a hundredth by less than 1e-6. Streamwise speeds are in a
-        # root with 0.01 m/s (docs/theory.md, section 4c).
+        # root with 0.036 sqrt(g' d) (docs/theory.md, section 4c).
+        slowest = 0.036 * (1.55 * 9.8 * 5e-3) ** 0.5
         def beetstra(phi, reynolds, crowd):
             n = 1 - phi
             return 10 * phi / n ** 2 + n ** 2 * (1 + 1.5 * phi ** 0.5) + 0.413 * reynolds / (24 * n ** 2) * (
@@ -106,7 +107,7 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
                 phi, drift = column["solid_fraction"][grains], column["drift_velocity"][grains]
                 along = (column["fluid_velocity"] - column["grain_velocity"])[grains, 0]
                 self.assertGreater(abs(drift).max(), 0.01 * abs(along).max())   # or the two speeds are one
-                speed = numpy.hypot(along, 0.01 if "drag_speed=streamwise" in settings else drift)
+                speed = numpy.hypot(along, slowest if "drag_speed=streamwise" in settings else drift)
                 reynolds = (1 - phi) * speed * 5e-3 / 1e-6
                 numpy.testing.assert_allclose(column["drag_reynolds_number"][grains], reynolds, rtol=1e-6)
                 numpy.testing.assert_allclose(column["drag_function"][grains], law(phi, reynolds), rtol=1e-6)
