@@ -1,10 +1,12 @@
 """Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`."""
 import csv
 import io
+import itertools
 import os
 import re
 import socket
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,34 +16,75 @@ from thalweg.errors import RunFolderError
 HEADING = re.compile(r"\s*(.*?)\s*(?:\[(.*)\])?\s*$")
 
 
+class Table(NamedTuple):
+    """Rows as dictionaries of text by heading, and comments, which are lines that begin with #: lists of those above the
+    headings, above each row, and below the last."""
+    rows: list
+    comments: list
+
+
+def read_table(path):
+    """The table in a file."""
+    headings, rows, comments = None, [], [[]]
+    with open(path, newline="", encoding="utf-8") as lines:
+        for line in lines:
+            if line.startswith("#"):
+                comments[-1].append(line.rstrip("\r\n"))
+            elif line.strip():
+                values = next(csv.reader(itertools.chain([line], lines)))   # more lines where a value has them
+                if headings is not None:
+                    rows.append(dict(itertools.zip_longest(headings, values)))
+                headings = headings or values
+                comments.append([])
+    return Table(rows, comments if headings else comments + [[]])
+
+
 def read_rows(path):
     """Rows of a table as dictionaries of text by heading; lines that begin with # are comments."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return read_table(path).rows
+
+
+def merged_lines(table, rows):
+    """Rows of a table and the comments between them, with `rows` in place of those of the same runs: a comment stays
+    above the row that it stood above, or the one in its place, and one below all rows stays above those that are
+    new."""
+    _, *above, below = table.comments
+    known = list(dict.fromkeys(row["run"] for row in table.rows))
+    lines = [] if known else list(below)
+    for name in dict.fromkeys(known + [row["run"] for row in rows]):
+        old = [(comments, row) for comments, row in zip(above, table.rows) if row["run"] == name]
+        new = [row for row in rows if row["run"] == name] or [row for _, row in old]
+        for comments, row in itertools.zip_longest((comments for comments, _ in old), new):
+            lines += [*(comments or ()), *([row] if row else [])]
+        lines += below if known and name == known[-1] else []
+    return lines
 
 
 def merged_rows(path, rows, needed=("run",)):
-    """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back.
-    None: there is no table, and rows are all there is. What is in it outlives the folders of the runs. needed: headings
-    without which it is another table."""
+    """Rows (dictionaries by heading) of a table of runs, with `rows` in place of those of the same runs; written back,
+    with the comments that are in the file. None: there is no table, and rows are all there is. What is in it outlives
+    the folders of the runs. needed: headings without which it is another table."""
     if path is None:
         return rows
     path = Path(path)
-    kept = read_rows(path) if path.exists() else []
-    missing = [heading for heading in needed if kept and heading not in kept[0]]
+    table = read_table(path) if path.exists() else Table([], [[], []])
+    missing = [heading for heading in needed if table.rows and heading not in table.rows[0]]
     if missing:
         raise RunFolderError(f"{path}: it has no column {missing[0]}, so that it is another table; give a new name.")
-    merged = []
-    for name in dict.fromkeys(row["run"] for row in kept + rows):
-        of_this = [row for row in rows if row["run"] == name]
-        merged += of_this or [row for row in kept if row["run"] == name]
+    lines = merged_lines(table, rows)
+    merged = [line for line in lines if isinstance(line, dict)]
     if not merged:
         raise RunFolderError(f"{path}: there is no run in this table and none to put into it; give run folders.")
     stream = io.StringIO()
     headings = dict.fromkeys(heading for row in rows + merged for heading in row)
     writer = csv.DictWriter(stream, headings, lineterminator="\n")
+    stream.writelines(f"{comment}\n" for comment in table.comments[0])
     writer.writeheader()
-    writer.writerows(merged)
+    for line in lines:
+        if isinstance(line, dict):
+            writer.writerow(line)
+        else:
+            stream.write(f"{line}\n")
     replace_text(path, stream.getvalue())
     return merged
 

@@ -54,6 +54,32 @@ class MergedRows(unittest.TestCase):
             merged_rows(path, [{"run": "b", "q": "1"}])
             self.assertEqual(read_rows(path), [{"run": "a", "q": "", "remark": "good"}, {"run": "b", "q": "1", "remark": ""}])
 
+    def test_comments_stay_where_they_stood(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            head = "# q as printed\nrun,q\n# narrow boxes\na,1\n"
+            path.write_text(f"{head}b,2\n# cut short,\n# 3 s of 9\nb,3\n# wide boxes\nc,4\n# checked\n", encoding="utf-8")
+            merged_rows(path, [{"run": "d", "q": "6"}, {"run": "b", "q": "5"}])
+            text = f"{head}b,5\n# cut short,\n# 3 s of 9\n# wide boxes\nc,4\n# checked\nd,6\n"
+            self.assertEqual(path.read_text(encoding="utf-8"), text)
+            merged_rows(path, [])
+            self.assertEqual(path.read_text(encoding="utf-8"), text)
+
+    def test_comments_of_a_table_without_rows_are_kept(self):
+        for before, after in (("# a\n", "# a\nrun,q\nb,1\n"), ("# a\nrun,q\n# c\n", "# a\nrun,q\n# c\nb,1\n")):
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / "table.csv"
+                path.write_text(before, encoding="utf-8")
+                merged_rows(path, [{"run": "b", "q": "1"}])
+                self.assertEqual(path.read_text(encoding="utf-8"), after)
+
+    def test_a_value_of_several_lines_is_no_comment(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            path.write_text('run,remark\na,"one\n# two"\n', encoding="utf-8")
+            merged_rows(path, [{"run": "b", "remark": ""}])
+            self.assertEqual(read_rows(path), [{"run": "a", "remark": "one\n# two"}, {"run": "b", "remark": ""}])
+
     def test_without_a_table_nothing_is_kept(self):
         self.assertEqual(merged_rows(None, [{"run": "a"}]), [{"run": "a"}])
 
