@@ -17,26 +17,41 @@ HEADING = re.compile(r"\s*(.*?)\s*(?:\[(.*)\])?\s*$")
 
 
 class Table(NamedTuple):
-    """Rows as dictionaries of text by heading, and comments, which are lines that begin with #: lists of those above the
-    headings, above each row, and below the last."""
+    """Headings, rows as dictionaries of text by heading, and comments, which are lines that begin with #: lists of those
+    above the headings, above each row, and below the last."""
+    headings: list
     rows: list
     comments: list
 
 
+def records_of(lines):
+    """Comments, as text, and headings and rows, as lists of text, of a table."""
+    for line in lines:
+        if line.startswith("#"):
+            yield line.rstrip("\r\n")
+        elif line.strip():
+            yield next(csv.reader(itertools.chain([line], lines)))   # more lines where a value has them
+
+
 def read_table(path):
-    """The table in a file."""
-    headings, rows, comments = None, [], [[]]
-    with open(path, newline="", encoding="utf-8") as lines:
-        for line in lines:
-            if line.startswith("#"):
-                comments[-1].append(line.rstrip("\r\n"))
-            elif line.strip():
-                values = next(csv.reader(itertools.chain([line], lines)))   # more lines where a value has them
-                if headings is not None:
-                    rows.append(dict(itertools.zip_longest(headings, values)))
-                headings = headings or values
-                comments.append([])
-    return Table(rows, comments if headings else comments + [[]])
+    """The table in a file; RunFolderError where it cannot be read."""
+    headings, rows, comments = [], [], [[]]
+    try:
+        with open(path, newline="", encoding="utf-8") as lines:
+            records = list(records_of(lines))
+    except UnicodeDecodeError:
+        raise RunFolderError(f"{path} is not UTF-8; save it as UTF-8.") from None
+    for record in records:
+        if isinstance(record, str):
+            comments[-1].append(record)
+            continue
+        comments.append([])
+        if headings and len(record) > len(headings):
+            raise RunFolderError(f"{path}: the row {','.join(record)} has more values than there are headings.")
+        if headings:
+            rows.append(dict(itertools.zip_longest(headings, record)))
+        headings = headings or record
+    return Table(headings, rows, comments if headings else comments + [[]])
 
 
 def read_rows(path):
@@ -67,26 +82,28 @@ def merged_rows(path, rows, needed=("run",)):
     if path is None:
         return rows
     path = Path(path)
-    table = read_table(path) if path.exists() else Table([], [[], []])
-    missing = [heading for heading in needed if table.rows and heading not in table.rows[0]]
+    table = read_table(path) if path.exists() else Table([], [], [[], []])
+    missing = [heading for heading in needed if table.headings and heading not in table.headings]
     if missing:
         raise RunFolderError(f"{path}: it has no column {missing[0]}, so that it is another table; give a new name.")
     lines = merged_lines(table, rows)
     merged = [line for line in lines if isinstance(line, dict)]
     if not merged:
         raise RunFolderError(f"{path}: there is no run in this table and none to put into it; give run folders.")
-    stream = io.StringIO()
-    headings = dict.fromkeys(heading for row in rows + merged for heading in row)
-    writer = csv.DictWriter(stream, headings, lineterminator="\n")
-    stream.writelines(f"{comment}\n" for comment in table.comments[0])
-    writer.writeheader()
-    for line in lines:
-        if isinstance(line, dict):
-            writer.writerow(line)
-        else:
-            stream.write(f"{line}\n")
-    replace_text(path, stream.getvalue())
+    headings = list(dict.fromkeys(heading for row in rows + merged for heading in row))
+    records = [[line.get(heading) for heading in headings] if isinstance(line, dict) else line for line in lines]
+    replace_text(path, "".join(line_of(record) for record in [*table.comments[0], headings, *records]))
     return merged
+
+
+def line_of(record):
+    """A comment, or values, as a line of a table."""
+    if isinstance(record, str):
+        return f"{record}\n"
+    stream, like_comment = io.StringIO(), str(record[0]).startswith("#")
+    quoting = csv.QUOTE_ALL if like_comment else csv.QUOTE_MINIMAL
+    csv.writer(stream, quoting=quoting, lineterminator="\n").writerow(record)
+    return stream.getvalue()
 
 
 def replace_text(path, text):

@@ -41,11 +41,29 @@ class MergedRows(unittest.TestCase):
     def test_a_table_of_something_else_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "series.csv"
-            for text, needed in (("time [s]\n0\n", ("run",)), ("run,q\na,1\n", ("run", "error"))):
+            for text, needed in (
+                ("time [s]\n0\n", ("run",)), ("time [s]\n", ("run",)), ("run,q\na,1\n", ("run", "error")),
+            ):
                 path.write_text(text, encoding="utf-8")
                 with self.assertRaisesRegex(RunFolderError, f"it has no column {needed[-1]}"):
                     merged_rows(path, [{"run": "b", "q": "1", "error": "2"}], needed)
                 self.assertEqual(path.read_text(encoding="utf-8"), text)
+
+    def test_a_table_that_cannot_be_read_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            for content, words in ((b"run,q\na,1,2,3\n", "the row a,1,2,3 has more values"),
+                                   (b"run,q\nb\xe9d,1\n", "table.csv is not UTF-8")):
+                path.write_bytes(content)
+                with self.assertRaisesRegex(RunFolderError, words):
+                    merged_rows(path, [{"run": "b", "q": "1"}])
+                self.assertEqual(path.read_bytes(), content)
+
+    def test_a_run_whose_name_looks_like_a_comment_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            merged_rows(path, [{"run": "#3", "q": "1"}])
+            self.assertEqual(read_rows(path), [{"run": "#3", "q": "1"}])
 
     def test_columns_of_one_run_alone_are_kept(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -58,9 +76,10 @@ class MergedRows(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "table.csv"
             head = "# q as printed\nrun,q\n# narrow boxes\na,1\n"
-            path.write_text(f"{head}b,2\n# cut short,\n# 3 s of 9\nb,3\n# wide boxes\nc,4\n# checked\n", encoding="utf-8")
+            rest = "# wide boxes\nc,4\n# checked\n"
+            path.write_text(f"{head}b,2\n# cut short,\n# 3 s of 9\nb,3\n{rest}", encoding="utf-8")
             merged_rows(path, [{"run": "d", "q": "6"}, {"run": "b", "q": "5"}])
-            text = f"{head}b,5\n# cut short,\n# 3 s of 9\n# wide boxes\nc,4\n# checked\nd,6\n"
+            text = f"{head}b,5\n# cut short,\n# 3 s of 9\n{rest}d,6\n"
             self.assertEqual(path.read_text(encoding="utf-8"), text)
             merged_rows(path, [])
             self.assertEqual(path.read_text(encoding="utf-8"), text)
