@@ -4,6 +4,7 @@ import io
 import itertools
 import os
 import re
+import shutil
 import socket
 from pathlib import Path
 from typing import NamedTuple
@@ -107,13 +108,20 @@ def line_of(record):
 
 
 def replace_text(path, text):
-    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one."""
+    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one. A link stays
+    one, and the file that it leads to keeps its permissions."""
+    path = path.resolve()
     temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
-    with open(temporary, "w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    temporary.replace(path)
+    try:
+        with open(temporary, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)   # on a full disk
 
 
 def read_series(path):

@@ -37,6 +37,18 @@ class MergedRows(unittest.TestCase):
             with mock.patch("os.fsync", side_effect=OSError(28, "No space left on device")), self.assertRaises(OSError):
                 merged_rows(path, [{"run": "b", "q": "2"}])
             self.assertEqual(path.read_bytes(), before)
+            self.assertEqual(list(path.parent.iterdir()), [path])
+
+    def test_a_link_to_a_table_stays_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, link = Path(folder) / "table.csv", Path(folder) / "link.csv"
+            merged_rows(path, [{"run": "a", "q": "1"}])
+            path.chmod(0o664)
+            link.symlink_to("table.csv")
+            merged_rows(link, [{"run": "b", "q": "2"}])
+            self.assertTrue(link.is_symlink())
+            self.assertEqual(read_rows(path), [{"run": "a", "q": "1"}, {"run": "b", "q": "2"}])
+            self.assertEqual(path.stat().st_mode & 0o777, 0o664)
 
     def test_a_table_of_something_else_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:
