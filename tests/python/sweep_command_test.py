@@ -119,22 +119,54 @@ class Machine(unittest.TestCase):
 
 
 class Memory(Folder):
-    """The program says of each run that it takes as many bytes as its setting `size`."""
+    """The program says of each run that it takes as many bytes as its first setting, `size`, and refuses those with a
+    negative friction."""
+
+    def setUp(self):
+        super().setUp()
+        program = self.folder / "program"
+        program.write_text(
+            f'#!/bin/sh\necho "$*" >> "{self.folder}/asked"\n[ "$1" = check ] || exit 1\n'
+            'case "$*" in *friction=-*) echo thalweg: negative. >&2; exit 2;; esac\n'
+            'echo "{\\"figures\\": {\\"memory\\": ${5#size=}}}"\n'
+        )
+        program.chmod(0o755)
+        environment = unittest.mock.patch.dict(
+            os.environ, THALWEG_PROGRAM=str(program), THALWEG_CORES="4", THALWEG_MEMORY="1e9"
+        )
+        environment.start()
+        self.addCleanup(environment.stop)
+
+    def checks(self):
+        return [line for line in (self.folder / "asked").read_text().splitlines() if line.startswith("check ")]
 
     def test_the_largest_run_counts_wherever_it_stands(self):
-        program = self.folder / "program"
-        program.write_text('#!/bin/sh\nfor word; do :; done\n'
-                           f'echo . >> "{self.folder}/checks"\necho "{{\\"figures\\": {{\\"memory\\": ${{word#size=}}}}}}"\n')
-        program.chmod(0o755)
-        plan = self.plan(vary={"a.seed": [1, 2], "size": [10, 1000, 30]})
+        plan = self.plan(vary={"size": [10, 1000, 30], "a.seed": [1, 2]})
         tasks = tasks_of(plan, self.folder)
-        with unittest.mock.patch.dict(os.environ, THALWEG_PROGRAM=str(program)):
-            self.assertEqual(command.most_memory(plan, tasks), 1000.0)
-            self.assertEqual((self.folder / "checks").read_text(), ".\n" * 3)   # seeds make no difference
-            for task in tasks:
-                if task.settings["size"] == 1000:
-                    task.run.failure = "it has been made"
-            self.assertEqual(command.most_memory(plan, tasks), 30.0)
+        self.assertEqual(command.most_memory(tasks, command.Checks(plan.case)), 1000.0)
+        self.assertEqual(len(self.checks()), 3)   # seeds make no difference
+        for task in tasks:
+            if task.settings["size"] == 1000:
+                task.run.failure = "it has been made"
+        self.assertEqual(command.most_memory(tasks, command.Checks(plan.case)), 30.0)
+
+    def test_a_run_that_is_refused_takes_no_other_ones_memory_away(self):
+        for frictions in ([0.3, -1], [-1, 0.3]):
+            plan = self.plan(vary={"size": [10, 1000], "contact.friction": frictions})
+            self.assertEqual(command.most_memory(tasks_of(plan, self.folder), command.Checks(plan.case)), 1000.0)
+
+    def test_no_run_is_checked_twice(self):
+        sweep = self.folder / "sweep.yaml"
+        for text, count in (
+            ("vary: {size: [10, 1000, 30], a.seed: [1, 2]}", 3), ("vary: {size: [10]}", 1),
+            ("vary: {size: [10, 1000]}\nbisect: {key: slope, from: 0, to: 1, width: 0.2, holds: q > 0.1}", 4),
+        ):
+            sweep.write_text(f"case: case.yaml\n{text}\n")
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+                self.assertEqual(main(["sweep", str(sweep)]), 1)   # as no run works
+            self.assertEqual(len(self.checks()), count)
+            self.assertEqual(len(set(self.checks())), count)
+            (self.folder / "asked").unlink()
 
 
 class Slurm(Folder):

@@ -67,13 +67,32 @@ def asked(command):
     return subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace")
 
 
-def refuse_impossible(plan, tasks):
+class Checks:
+    """What `thalweg check` says of a case with some settings, asked for once."""
+
+    def __init__(self, case):
+        self.case, self.said = case, {}
+
+    def command(self, settings):
+        return tuple(check_command(program(), self.case, settings))
+
+    def __call__(self, settings):
+        command = self.command(settings)
+        if command not in self.said:
+            self.said[command] = asked(command)
+        return self.said[command]
+
+    def know(self, settings):
+        return self.command(settings) in self.said
+
+
+def refuse_impossible(plan, tasks, checks):
     """Before anything is run: a misspelt key would only make every run fail. A value that a run cannot have is that
     run's."""
-    ends = [settings for task in (tasks[:1] + tasks[1:][-1:]) for settings in task.ends()]
-    said = [asked(check_command(program(), plan.case, settings)) for settings in ends]
-    # A bisection chooses its runs as it goes on.
-    if said and not plan.bisections and all(check.returncode == 2 for check in said):
+    if plan.bisections:   # which choose their runs as they go on
+        return
+    said = [checks(task.settings) for task in tasks[:1] + tasks[1:][-1:]]
+    if said and all(check.returncode == 2 for check in said):
         raise SweepError(
             f"neither the first nor the last run can be set up: {said[0].stderr.strip().removeprefix('thalweg: ')}"
         )
@@ -85,14 +104,20 @@ def takes_memory(key):
     return not (key.startswith("contact.") or key.endswith((".seed", ".friction")) or key == "name")
 
 
-def most_memory(plan, tasks):
+def most_memory(tasks, checks):
     """That a run takes of those that are left, in bytes."""
-    left = [settings for task in tasks if task.wanted() for settings in task.ends()]
-    different = {json.dumps([(key, value) for key, value in settings.items() if takes_memory(key)]): settings
-                 for settings in left}
+    alike = {}   # settings, by what takes memory
+    for settings in (settings for task in tasks if task.wanted() for settings in task.ends()):
+        key = json.dumps([(key, value) for key, value in settings.items() if takes_memory(key)])
+        alike.setdefault(key, []).append(settings)
+
+    def memory_of(runs):
+        """Of one of them that can be run, in bytes."""
+        runs = sorted(runs, key=lambda settings: not checks.know(settings))
+        return memory_needed(checks(runs[0]).stdout) or memory_needed(checks(runs[-1]).stdout)
+
     with ThreadPoolExecutor(max_workers=cores()) as pool:
-        checks = pool.map(lambda settings: asked(check_command(program(), plan.case, settings)), different.values())
-        return max((memory_needed(check.stdout) for check in checks), default=0.0)
+        return max(pool.map(memory_of, alike.values()), default=0.0)
 
 
 def refuse_same_names(plan, file):
@@ -174,9 +199,9 @@ def sweep(wanted):
         if not 0 <= wanted.task < len(tasks):
             raise SweepError(f"--task {wanted.task}: the sweep has tasks 0 to {len(tasks) - 1}.")
         tasks = [tasks[wanted.task]]
-    units = units_of(plan)
-    refuse_impossible(plan, tasks)
-    jobs = wanted.jobs or runs_at_a_time(plan.ranks, most_memory(plan, tasks))
+    units, checks = units_of(plan), Checks(plan.case)
+    refuse_impossible(plan, tasks, checks)
+    jobs = wanted.jobs or runs_at_a_time(plan.ranks, most_memory(tasks, checks))
     runner = Runner(plan, tasks, units, program(), folder, jobs, wanted.retry, wanted.task is None)
     finished = runner.work()
     code = written(plan, tasks, units, folder) if wanted.task is None else 0
