@@ -3,16 +3,15 @@
 sentence.
 
 Called by ctest: check_fuzz_test.py THALWEG MPIEXEC NUMBER_OF_MUTATIONS [SEED]. A mutation changes one key (mutations.py). No
-crash, no hang, and what is refused names the file; the first ten failures are printed with the case that shows them.
+crash, no hang, and what is refused names the file.
 """
 import random
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import yaml
 
+from attempts import exit_code_of
 from mutations import ROOT, CaseLoader, limit_memory, mutated, text_of
 
 THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
@@ -46,21 +45,16 @@ def complaint(path):
 
 
 def main():
-    chance = random.Random(SEED)
-    cases, failures = list(shipped_cases()), []
-    with tempfile.TemporaryDirectory() as folder:
-        for number in range(NUMBER):
-            original, content = cases[number % len(cases)]
-            content, what = mutated(content, chance)
-            path = Path(folder) / "case.yaml"
-            path.write_text(text_of(content, chance))
-            wrong = complaint(path)
-            if wrong:
-                failures.append(f"{original.relative_to(ROOT)}, {what}: {wrong}")
-    for failure in failures[:10]:
-        print(failure)
-    print(f"{NUMBER} mutations, seed {SEED}: {len(failures)} failures")
-    return 1 if failures else 0
+    chance, cases = random.Random(SEED), list(shipped_cases())
+
+    def attempt(number, folder):
+        original, content = cases[number % len(cases)]
+        content, what = mutated(content, chance)
+        path = folder / "case.yaml"
+        path.write_text(text_of(content, chance))
+        return f"{original.relative_to(ROOT)}, {what}", complaint(path)
+
+    return exit_code_of(attempt, NUMBER, "mutations", SEED)
 
 
 if __name__ == "__main__":

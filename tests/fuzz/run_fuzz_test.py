@@ -6,18 +6,16 @@ Called by ctest: run_fuzz_test.py THALWEG MPIEXEC NUMBER_OF_MUTATIONS [SEED]. Th
 case that check refuses is refused by run in the same words, and nothing is written; a case that check reports on runs
 for two steps, or breaks down in the run (exit code 1, one sentence and a summary), but is not refused. No crash, no
 hang; mutations of sizes that would take more memory than a test has are not run, and those that would take more time
-only begin (--walltime). No message begins with a name that is missing. The first ten failures are printed with the
-case.
+only begin (--walltime). No message begins with a name that is missing.
 """
 import random
 import re
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import yaml
 
+from attempts import exit_code_of
 from mutations import CaseLoader, limit_memory, mutated, text_of
 
 THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
@@ -158,20 +156,14 @@ def disagreement(path, folder):
 
 def main():
     chance = random.Random(SEED)
-    failures, not_run = [], 0
-    for number in range(NUMBER):
-        with tempfile.TemporaryDirectory() as folder:
-            content, what = mutated(CASES[number % len(CASES)], chance)
-            path = Path(folder) / "case.yaml"
-            path.write_text(text_of(content, chance))
-            wrong = disagreement(path, Path(folder) / "run")
-            not_run += wrong is None
-            if wrong:
-                failures.append(f"{what}: {wrong}\n{path.read_text() if len(failures) < 3 else ''}")
-    for failure in failures[:10]:
-        print(failure)
-    print(f"{NUMBER} mutations, seed {SEED}: {len(failures)} failures, {not_run} too large to run")
-    return 1 if failures or not_run > NUMBER // 2 else 0
+
+    def attempt(number, folder):
+        content, what = mutated(CASES[number % len(CASES)], chance)
+        path = folder / "case.yaml"
+        path.write_text(text_of(content, chance))
+        return what, disagreement(path, folder / "run")
+
+    return exit_code_of(attempt, NUMBER, "mutations", SEED, "too large to run")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,24 @@
+"""Attempts at random cases: each in a folder of its own, and the first failures told with the case."""
+import tempfile
+from pathlib import Path
+
+
+def exit_code_of(attempt, count, what, seed, left_out=""):
+    """Makes `count` attempts, prints the first ten failures, three of them with the case, and how many there were. The
+    exit code is 1 where any failed or more than half were left out.
+
+    attempt(number, folder): writes case.yaml and returns its name and what is wrong with it; empty if nothing is, None
+    if it was left out. what: is attempted, as a word; left_out: why an attempt may be.
+    """
+    failures, left = [], 0
+    for number in range(count):
+        with tempfile.TemporaryDirectory() as folder:
+            name, wrong = attempt(number, Path(folder))
+            left += wrong is None
+            if wrong:
+                case = (Path(folder) / "case.yaml").read_text() if len(failures) < 3 else ""
+                failures.append(f"{name}: {wrong}\n{case}")
+    for failure in failures[:10]:
+        print(failure)
+    print(f"{count} {what}, seed {seed}: {len(failures)} failures{f', {left} {left_out}' if left_out else ''}")
+    return 1 if failures or left > count // 2 else 0
