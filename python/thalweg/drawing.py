@@ -27,6 +27,16 @@ def refuse_column(run):
                              "thalweg plot profiles draws its column.")
 
 
+def frames_at(run, time=None):
+    """The stored frames of grains and fluid that are nearest to a time (s) and to each other, without a time the last of
+    which both are stored; None for what is not."""
+    refuse_column(run)
+    if time is None and run.fluid:
+        time = run.fluid.times[-1]
+    grains = run.grains.nearest(time)
+    return grains, run.fluid.nearest(time if grains is None else grains.time)
+
+
 def colour_of(number):
     """Colour of one of up to twenty curves: ten colours, then the same paler."""
     return matplotlib.colormaps["tab20"]((2 * number) % 20 + number // 10 % 2)
@@ -119,10 +129,20 @@ def name_above(figure, name):
     figure.suptitle("\n".join(textwrap.wrap(name, letters)), fontsize=TITLE_SIZE, parse_math=False)
 
 
+def time_in_words(run, time):
+    return f"t = {time:.4g} {units_of(run).named('s')}"
+
+
 def title_of(run, time):
     """What a picture shows, and when, which stays on one line."""
-    when = f"t = {time:.4g} {units_of(run).named('s')}"
-    return f"{run.name}, " + when.replace(" ", "\u00a0")
+    return f"{run.name}, " + time_in_words(run, time).replace(" ", "\u00a0")
+
+
+def time_of_its_own(run, fluid, time):
+    """What stands below the name of the scale of the fluid in a picture at a time (s): when its frame was, where that is
+    another time."""
+    own = time_in_words(run, fluid.time)
+    return "" if own == time_in_words(run, time) else f"\nat {own}"
 
 
 def side_view_axes(run, time, bars):
@@ -204,7 +224,7 @@ def bed_figure(run, frame, fluid=None, largest_speed=None, largest_flow=None, sc
     figure.colorbar(plt.cm.ScalarMappable(norm, GRAIN_COLOURS), cax=bars[0], label=f"grain speed [{unit.speed}]",
                     extend="max")
     if layer is not None:
-        draw_water(figure, axes, bars[1], layer, unit, largest_flow)
+        draw_water(figure, axes, bars[1], layer, unit, largest_flow, time_of_its_own(run, fluid, frame.time))
     if layer is None or not layer[2].any():
         draw_solids(axes, run, frame.time)
     axes.set(xlim=(0, unit.per_length * size[0]), ylim=(0, unit.per_length * size[2]))
@@ -222,14 +242,15 @@ def flow_figure(run, fluid, largest_flow=None):
     return figure
 
 
-def draw_water(figure, axes, bar, layer, unit, largest=None):
-    """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed."""
+def draw_water(figure, axes, bar, layer, unit, largest=None, when=""):
+    """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed. when: below the
+    name of the scale."""
     flow, box, solid = layer
     extent = unit.per_length * np.array(box)
     water = axes.imshow(unit.per_speed * without_holes(flow), origin="lower", extent=extent, cmap=FLUID_COLOURS,
                         vmin=0.0, vmax=None if largest is None else unit.per_speed * largest, interpolation="bilinear",
                         zorder=1)
-    figure.colorbar(water, cax=bar, label=f"fluid speed [{unit.speed}]")
+    figure.colorbar(water, cax=bar, label=f"fluid speed [{unit.speed}]{when}")
     if solid.any():
         fill_solid(axes, solid, extent)
 

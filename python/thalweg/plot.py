@@ -157,7 +157,8 @@ def add_window(parser):
 
 def add_time(parser):
     parser.add_argument(
-        "--time", type=float, metavar="SECONDS", help="Simulated time of the picture (default: the last)"
+        "--time", type=float, metavar="SECONDS",
+        help="Simulated time of the picture (default: the last of which grains and flow are stored)",
     )
 
 

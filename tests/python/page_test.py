@@ -104,6 +104,7 @@ class Report(unittest.TestCase):
         for words in (
             "it is still running, has failed or was killed", "fluid.time_step=1e-05", "run.until=2", "run.until: 1 -> 2",
             "The step is <long>.", "3 grains overlap (at 0.5 s)", "0.1.0 (aaa)", "--resume", "standard error",
+            "in front of the flow in the middle plane, at the last time of which both are stored",
         ):
             self.assertIn(words, page.text)
         self.assertEqual(page.text.count("The step is <long>."), 1)   # of two sessions

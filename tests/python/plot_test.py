@@ -21,7 +21,7 @@ import made_up_profiles  # noqa: E402
 import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
 from thalweg import drawing, height_profiles, transport  # noqa: E402
-from thalweg.figures import transport_rate  # noqa: E402
+from thalweg.figures import overview, scene, transport_rate  # noqa: E402
 
 # Stands in for ffmpeg: the size of a frame follows -s; what arrives is counted into the film.
 FFMPEG = """#!{python}
@@ -226,6 +226,24 @@ class Plot(unittest.TestCase):
         self.assertEqual(rates.axes[0].get_ylabel(), "$q_s$ [sqrt(g'D$^3$)]")
         self.assertEqual(rates.axes[-1].get_xlabel(), "time $t$ [sqrt(D/g')]")
         self.assertIn(" sqrt(g'D^3), deviation", transport.transport(run).sentences()[0])
+
+    def test_grains_and_flow_of_different_times(self):
+        """There are grains at 0 and 3 s; the flow tells its time where the grains have another one."""
+        for flow, wanted, title, when in (
+            (3.0, None, "t = 3 s", ""), (3.0, 0.0, "t = 0 s", "\nat t = 3 s"), (1.25, None, "t = 0 s", "\nat t = 1.25 s"),
+            (2.99999, None, "t = 3 s", ""),
+        ):
+            made_up_run.write_index(self.folder / "fluid.pvd", [(flow, "fluid/fluid_30000.vti")])
+            run = thalweg.Run(self.folder)
+            figure = overview.bed_figure(run, wanted)
+            self.addCleanup(matplotlib.pyplot.close, figure)
+            self.assertTrue(figure.texts[0].get_text().replace("\u00a0", " ").endswith(title))
+            self.assertEqual(figure.axes[2].get_ylabel(), f"fluid speed [cm/s]{when}")
+            figure.canvas.draw()
+            self.assertLess(figure.axes[2].get_tightbbox().x1, figure.bbox.x1)
+            with unittest.mock.patch("thalweg.figures.scene.scale_bar", return_value=scene.vtkScalarBarActor()) as bar:
+                scene.scene(run, run.grains.nearest(wanted), run.fluid[0], (0.0, -1.0, 0.0), 10)
+            self.assertEqual(bar.call_args_list[1].args[1], f"fluid speed{when}")
 
     def test_the_cut_of_solids_without_a_slice_of_the_fluid(self):
         (self.folder / "fluid.pvd").unlink()

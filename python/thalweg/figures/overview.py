@@ -6,15 +6,11 @@ from thalweg.sizes import measured as measured_by_size
 
 
 def bed_figure(run, time=None):
-    """The grains, coloured by speed, in front of the fluid's speed in the middle plane, from the frames nearest to each
-    other in time (s)."""
-    drawing.refuse_column(run)
-    if time is None and run.fluid:
-        time = run.fluid.times[-1]
-    grains = run.grains.nearest(time)
+    """The grains, coloured by speed, in front of the fluid's speed in the middle plane, at a time (s)."""
+    grains, fluid = drawing.frames_at(run, time)
     if grains is None:
         raise RunFolderError(f"{run.folder}: no picture of the grains yet (output.grains.every in the case).")
-    return drawing.bed_figure(run, grains, run.fluid.nearest(grains.time))
+    return drawing.bed_figure(run, grains, fluid)
 
 
 def side_view_of(run, time=None):

@@ -169,18 +169,6 @@ def scale_bar(table, title, unit, place, font):
     return bar
 
 
-def pictured(run, time):
-    """The stored frames of grains and fluid that are nearest to a time (s) and to each other."""
-    drawing.refuse_column(run)
-    if time is None and run.fluid:
-        time = run.fluid.times[-1]
-    grains = run.grains.nearest(time)
-    fluid = run.fluid.nearest(grains.time if grains is not None else time)
-    if grains is None and fluid is None:
-        raise RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
-    return grains, fluid
-
-
 def scene(run, grains, fluid, direction, font):
     """Two renderers: the scene and its colour scales. direction: from which to look."""
     far_side = run.size[1] if direction[1] < 0.0 else 0.0   # y of the slice, m
@@ -199,7 +187,8 @@ def scene(run, grains, fluid, direction, font):
     shown = [("grain speed", *grain_actor(grains, unit.per_speed))] if grains else []
     layer = drawing.fluid_slice(fluid) if fluid else None
     if layer is not None:
-        shown.append(("fluid speed", *slice_actor(fluid, layer, far_side, unit.per_speed)))
+        name = "fluid speed" + drawing.time_of_its_own(run, fluid, time)
+        shown.append((name, *slice_actor(fluid, layer, far_side, unit.per_speed)))
     if not shown and grains is None:
         raise RunFolderError(f"{run.folder}: its frames of the fluid hold no velocity in the x-z plane.")
     for place, (title, actor, table) in enumerate(shown):
@@ -252,7 +241,7 @@ def picture_of(run, grains, fluid, direction, pixels):
 
 
 def draw(run, path, time, direction, pixels):
-    """Writes a .png of the frames nearest to a time (s; None: the last). direction: from which to look; pixels: width
+    """Writes a .png of the frames nearest to a time (s; None: as in frames_at). direction: from which to look; pixels: width
     and height."""
     if not 0.0 < np.linalg.norm(direction) < np.inf:
         raise RunFolderError(
@@ -264,7 +253,9 @@ def draw(run, path, time, direction, pixels):
         )
     if path.suffix.lower() != ".png":
         raise RunFolderError(f"--out {path}: a picture is a .png; give a name with this ending.")
-    grains, fluid = pictured(run, time)
+    grains, fluid = drawing.frames_at(run, time)
+    if grains is None and fluid is None:
+        raise RunFolderError(f"{run.folder}: there is no frame of grains or fluid (output.grains.every in the case).")
     path.parent.mkdir(parents=True, exist_ok=True)
     with display():
         picture = picture_of(run, grains, fluid, direction, pixels)

@@ -98,9 +98,13 @@ def pictures(run):
     if run.case.get("system") == "continuum":
         return ""
     name, draw = overview.side_view_of(run)
-    behind = ", in front of the flow in the middle plane" if len(run.fluid) else ""
+    grains = "Side view of the grains, coloured by speed"
     caption = {
-        "bed": f"Side view of the last stored frame: the grains, coloured by speed{behind}.",
+        "bed": (
+            f"{grains}, in front of the flow in the middle plane, at the last time of which both are stored."
+            if len(run.fluid)
+            else f"{grains}, in the last stored frame."
+        ),
         "flow": "Speed of the fluid in the middle plane, in the last stored frame.",
     }[name]
     return html.section("Picture", attempt(draw, caption))
