@@ -1,6 +1,8 @@
 """Sediment along a reach as Python shows it: records, figure and page of a run whose numbers are known."""
 import json
+import sys
 import unittest
+import unittest.mock
 import warnings
 
 import h5py
@@ -114,6 +116,21 @@ class ReachTest(made_up.MadeUpFolder):
         (bed,) = drawn.axes[-1].lines
         np.testing.assert_allclose(bed.get_xydata()[:, 1], [12.0, 20.0, 30.0])
         plt.close(drawn)
+
+    def test_section_0_of_a_periodic_box_is_its_end_as_well(self):
+        with unittest.mock.patch.object(sys.modules[__name__], "SECTION", np.array([0.0, 0.03])):
+            self.write_part(0, slice(0, 0))
+            self.write_part(10, slice(0, 2))
+            self.write_part(20, slice(2, 3))
+            self.write_means()
+        drawn = figure.figure_of(self.run_())
+        self.addCleanup(plt.close, drawn)
+        cells = drawn.axes[1].collections[0]
+        np.testing.assert_allclose(cells.get_coordinates()[0, :, 0], [-15.0, 15.0, 45.0, 75.0])   # mm, of a box of 60
+        np.testing.assert_array_equal(cells.get_array().reshape(3, 3), Q_STAR[:, [0, 1, 0]])
+        self.assertEqual(drawn.axes[1].get_xlim(), (0.0, 60.0))
+        (line,) = drawn.axes[2].lines
+        np.testing.assert_allclose(line.get_xydata(), [[0.0, 0.25], [30.0, 0.5], [60.0, 0.25]])
 
     def test_a_bed_without_a_level_is_drawn_without_warnings(self):
         with h5py.File(self.folder / "reach/part_000000010.h5", "a") as first:

@@ -23,11 +23,20 @@ def edges_of(places):
     return np.append(places - half, places[-1] + half)
 
 
-def draw_in_time(figure, axes, reach, name, factor, label, units, **colours):
+def with_end(places, length, *arrays):
+    """Places along a box (m), and arrays [..., place]. Section 0 of a periodic box is its end as well, and stands there
+    once more."""
+    if places[0] > 0.0:
+        return places, *arrays
+    return np.append(places, length), *(np.concatenate([values, values[..., :1]], axis=-1) for values in arrays)
+
+
+def draw_in_time(figure, axes, run, name, factor, label, units, **colours):
     """An array [time, place] as colours over x and the time of the records."""
-    places = reach[reach.dimensions(name)[1]]
+    reach = run.reach
+    places, values = with_end(reach[reach.dimensions(name)[1]], run.size[0], reach[name])
     times = np.append(reach["time"][0] - reach["interval"][0], reach["time"])
-    values = np.ma.masked_invalid(factor * reach[name])
+    values = np.ma.masked_invalid(factor * values)
     drawn = axes.pcolormesh(units.per_length * edges_of(places), times, values, **colours)
     axes.set_facecolor("0.85")
     axes.set_ylabel(f"time $t$ [{units.named('s')}]")
@@ -49,9 +58,11 @@ def counted(run, reach):
     return found if found.any() else np.ones_like(found)
 
 
-def draw_means(axes, means, name, label, units):
+def draw_means(axes, run, name, label, units):
     """The mean transport of the sections with its error, and at the right the mean level of the bins."""
-    x, rate, error = units.per_length * means["section"], means[name], np.nan_to_num(means[f"{name}_error"])
+    means = run.profiles["reach"]
+    x, rate, error = with_end(means["section"], run.size[0], means[name], np.nan_to_num(means[f"{name}_error"]))
+    x = units.per_length * x
     axes.fill_between(x, rate - error, rate + error, color=RATE, alpha=0.2, lw=0)
     axes.plot(x, rate, color=RATE, lw=1.4)
     axes.set_ylabel(label, color=RATE)
@@ -79,10 +90,10 @@ def figure_of(run):
         3 if has_means else 2, 1, figsize=(7.2, 7.5 if has_means else 5.4), sharex=True, layout="constrained"
     )
     bed_label = f"bed level $z_b$ [{units.length}]"
-    draw_in_time(figure, panels[0], reach, "bed_level", units.per_length, bed_label, units, cmap="cividis")
-    draw_in_time(figure, panels[1], reach, name, 1.0, label, units, **colours_of(reach[name][counted(run, reach)]))
+    draw_in_time(figure, panels[0], run, "bed_level", units.per_length, bed_label, units, cmap="cividis")
+    draw_in_time(figure, panels[1], run, name, 1.0, label, units, **colours_of(reach[name][counted(run, reach)]))
     if has_means:
-        draw_means(panels[2], means, name, label, units)
+        draw_means(panels[2], run, name, label, units)
         panels[2].set_title(
             f"means from {run.averaged_from('reach'):.4g} {units.named('s')} on, in a band of one standard error",
             fontsize=9, loc="left",
