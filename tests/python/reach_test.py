@@ -132,6 +132,16 @@ class ReachTest(made_up.MadeUpFolder):
         (line,) = drawn.axes[2].lines
         np.testing.assert_allclose(line.get_xydata(), [[0.0, 0.25], [30.0, 0.5], [60.0, 0.25]])
 
+    def test_a_time_without_records_stays_empty(self):
+        """The run went on without analysis.reach for a second between the second and the third record."""
+        with h5py.File(self.folder / "reach/part_000000020.h5", "a") as file:
+            file["time"][...] = 2.5
+        drawn = figure.figure_of(self.run_())
+        self.addCleanup(plt.close, drawn)
+        cells = drawn.axes[1].collections[0]
+        np.testing.assert_allclose(cells.get_coordinates()[:, 0, 1], [0.0, 0.5, 1.0, 2.0, 2.5])
+        np.testing.assert_array_equal(cells.get_array().reshape(4, 2).filled(-1.0), np.insert(Q_STAR, 2, -1.0, axis=0))
+
     def test_a_bed_without_a_level_is_drawn_without_warnings(self):
         with h5py.File(self.folder / "reach/part_000000010.h5", "a") as first:
             first["bed_level"][...] = np.nan

@@ -31,11 +31,19 @@ def with_end(places, length, *arrays):
     return np.append(places, length), *(np.concatenate([values, values[..., :1]], axis=-1) for values in arrays)
 
 
+def with_gaps(time, interval, values):
+    """Edges of the records in time, from their ends and intervals (s), and values [time, place], with a record of none
+    wherever the run went on for a time without any."""
+    begin = time - interval
+    gaps = np.flatnonzero(begin[1:] - time[:-1] > 0.01 * interval[1:]) + 1
+    return np.append(begin[0], np.insert(time, gaps, begin[gaps])), np.insert(values, gaps, np.nan, axis=0)
+
+
 def draw_in_time(figure, axes, run, name, factor, label, units, **colours):
     """An array [time, place] as colours over x and the time of the records."""
     reach = run.reach
     places, values = with_end(reach[reach.dimensions(name)[1]], run.size[0], reach[name])
-    times = np.append(reach["time"][0] - reach["interval"][0], reach["time"])
+    times, values = with_gaps(reach["time"], reach["interval"], values)
     values = np.ma.masked_invalid(factor * values)
     drawn = axes.pcolormesh(units.per_length * edges_of(places), times, values, **colours)
     axes.set_facecolor("0.85")
