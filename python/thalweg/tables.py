@@ -1,4 +1,5 @@
-"""Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`."""
+"""Tables of comma-separated values whose headings carry units: `q_s [m^2/s]`. Other programs may have saved them, with
+lines that end as on Windows and a byte-order mark."""
 import csv
 import io
 import itertools
@@ -14,12 +15,13 @@ import numpy as np
 from thalweg.columns import Columns
 from thalweg.errors import RunFolderError
 
+ENCODING = "utf-8-sig"   # of what is read: UTF-8, with a byte-order mark or without
 HEADING = re.compile(r"\s*(.*?)\s*(?:\[(.*)\])?\s*$")
 
 
 class Table(NamedTuple):
-    """Headings, rows as dictionaries of text by heading, and comments, which are lines that begin with #: lists of those
-    above the headings, above each row, and below the last."""
+    """Headings, rows as dictionaries of text by heading, and comments, which are lines that begin with #: lists of
+    those above the headings, above each row, and below the last."""
     headings: list
     rows: list
     comments: list
@@ -38,7 +40,7 @@ def read_table(path):
     """The table in a file; RunFolderError where it cannot be read."""
     headings, rows, comments = [], [], [[]]
     try:
-        with open(path, newline="", encoding="utf-8") as lines:
+        with open(path, newline="", encoding=ENCODING) as lines:
             records = list(records_of(lines))
     except UnicodeDecodeError:
         raise RunFolderError(f"{path} is not UTF-8; save it as UTF-8.") from None
@@ -108,8 +110,8 @@ def line_of(record):
 
 
 def replace_text(path, text):
-    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one. A link stays
-    one, and the file that it leads to keeps its permissions."""
+    """Writes a file at once: whoever reads it meanwhile, or after a crash, sees the old one or the new one. A link
+    stays one, and the file that it leads to keeps its permissions."""
     path = path.resolve()
     temporary = path.with_name(f"{path.stem}.{socket.gethostname()}.{os.getpid()}.partial")
     try:
@@ -129,7 +131,7 @@ def read_series(path):
     of line is there."""
     if not path.exists():
         raise RunFolderError(f"{path}: there is no such file; is this the folder of a run?")
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = path.read_text(encoding=ENCODING, errors="replace")   # with any end of line as \n
     lines = [line for line in text[:text.rfind("\n") + 1].splitlines() if not line.startswith("#")]
     rows = list(csv.reader(lines))
     complete = [row for row in rows[1:] if len(row) == len(rows[0])]

@@ -6,6 +6,7 @@ from unittest import mock
 
 import made_up_folder   # noqa: F401  finds the package
 from thalweg.errors import RunFolderError
+from thalweg.run import Run
 from thalweg.tables import merged_rows, read_rows
 
 
@@ -113,6 +114,32 @@ class MergedRows(unittest.TestCase):
 
     def test_without_a_table_nothing_is_kept(self):
         self.assertEqual(merged_rows(None, [{"run": "a"}]), [{"run": "a"}])
+
+
+class FromWindows(unittest.TestCase):
+    """Files that git or an editor has saved with other ends of lines or a byte-order mark."""
+
+    def test_a_series(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "case.yaml").write_text("system: grains\n", encoding="utf-8")
+            for mark in (b"", b"\xef\xbb\xbf"):
+                for end in (b"\n", b"\r\n"):
+                    rows = (b"time [s],q_s [m^2/s]", b"0,0.5", b"1,0.25", b"2,0.2")   # the last is being written
+                    (Path(folder) / "series.csv").write_bytes(mark + end.join(rows))
+                    series = Run(folder).series
+                    self.assertEqual({name: list(values) for name, values in series.items()},
+                                     {"time": [0.0, 1.0], "q_s": [0.5, 0.25]})
+                    self.assertEqual(series.units, {"time": "s", "q_s": "m^2/s"})
+
+    def test_a_table_of_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "table.csv"
+            for mark in (b"", b"\xef\xbb\xbf"):
+                for end in (b"\n", b"\r\n"):
+                    path.write_bytes(mark + end.join((b"# d\xc3\xbcnn", b"run,q", b"a,1", b"# b", b"b,2", b"")))
+                    merged_rows(path, [{"run": "b", "q": "3"}])
+                    self.assertEqual(read_rows(path), [{"run": "a", "q": "1"}, {"run": "b", "q": "3"}])
+                    self.assertEqual(path.read_bytes(), "# dünn\nrun,q\na,1\n# b\nb,3\n".encode())
 
 
 if __name__ == "__main__":
