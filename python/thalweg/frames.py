@@ -20,10 +20,10 @@ AXES = {3: list("xyz"), 9: [row + column for row in "xyz" for column in "xyz"], 
 
 class GrainFrame:
     """The grains at one time: `frame.position` [grain, axis], `frame.velocity`, `frame.contact_stress` [grain, row,
-    column] and so on; `arrays` has all of them with their units."""
+    column] and so on; `arrays` has all of them with their units. thickness: of disks, m; None: they are spheres."""
 
-    def __init__(self, time, path):
-        self.time, self.path = time, path   # s
+    def __init__(self, time, path, thickness=None):
+        self.time, self.path, self.thickness = time, path, thickness   # s
 
     @cached_property
     def arrays(self):
@@ -71,8 +71,8 @@ class GrainFrame:
 
     @property
     def volume(self):
-        """m^3"""
-        return 4.0 / 3.0 * np.pi * self.radius**3
+        """m^3: of each sphere or disk; members of a clump both have what they share."""
+        return 4.0 / 3.0 * np.pi * self.radius**3 if self.thickness is None else np.pi * self.radius**2 * self.thickness
 
 
 class FluidFrame:

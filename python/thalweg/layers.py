@@ -119,8 +119,7 @@ def layer_profiles(run, start=-np.inf, stop=np.inf, thickness=None, bed_only=Fal
     """Profiles over the height of the box from the frames between two times (s); layers of half a diameter if no
     thickness (m) is given. bed_only: without grains that float over the bed."""
     edges = layer_edges(0.0, run.size[2], thickness or 0.5 * run.diameter)
-    disks = run.case.get("disks")
-    width = float(disks["thickness"]) if disks else None
+    width = run.disk_thickness
     sums = LayerSums(edges, run.size[0] * (width or run.size[1]), run.size[2] if run.periodic[2] else None, width, run,
                      bed_only)
     for frame in run.grains.between(start, stop):

@@ -51,7 +51,7 @@ class Run:
     @cached_property
     def grains(self):
         """Frames of the grains."""
-        return Frames.of_index(self.folder / "grains.pvd", GrainFrame)
+        return Frames.of_index(self.folder / "grains.pvd", self._grain_frame)
 
     @cached_property
     def fluid(self):
@@ -69,7 +69,10 @@ class Run:
 
     def grain_part(self, name):
         """Frames of one of `output.grain_parts` of the case, by its name; they may show no grain."""
-        return self._part("grain_parts", name, GrainFrame)
+        return self._part("grain_parts", name, self._grain_frame)
+
+    def _grain_frame(self, time, path):
+        return GrainFrame(time, path, self.disk_thickness)
 
     def _part(self, kind, name, frame):
         index = self.folder / kind / f"{name}.pvd"
@@ -257,9 +260,15 @@ class Run:
         return float(column[-1]) if len(column) else None
 
     @property
+    def disk_thickness(self):
+        """m; None where the grains are spheres."""
+        disks = self.case.get("disks")
+        return float(disks["thickness"]) if disks else None
+
+    @property
     def size_exponent(self):
         """The power of the diameter that the mass of a grain grows with: 3, of disks 2."""
-        return 2 if self.case.get("disks") else 3
+        return 3 if self.disk_thickness is None else 2
 
     @cached_property
     def diameter(self):

@@ -7,7 +7,7 @@ import numpy as np
 
 import made_up_folder as made_up
 import thalweg
-from thalweg import film
+from thalweg import film, layers
 from thalweg.vtk_files import read_image, read_points, read_triangles
 
 
@@ -357,6 +357,17 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertFalse(hasattr(frame, "fluid_stress"))
         with self.assertRaisesRegex(thalweg.RunFolderError, "the frame has no fluid_stress"):
             frame.fluid_stress
+
+    def test_the_volume_of_disks(self):
+        """Their layers hold as much."""
+        places = np.column_stack([0.01 + 0.005 * np.arange(8), np.full(8, 5e-3), 0.02 + 0.002 * np.arange(8)])
+        self.write_frames((0.0,), [places])
+        run = self.with_case("grains:", "disks: {thickness: 2e-3}\ngrains:")
+        frame = run.grains[0]
+        np.testing.assert_allclose(frame.volume, np.pi * frame.radius**2 * 2e-3, rtol=1e-15)
+        profiles = layers.layer_profiles(run, thickness=2.475e-3)   # sixty layers
+        of_layer = run.size[0] * 2e-3 * run.size[2] / len(profiles["z"])
+        self.assertAlmostEqual(profiles["solid_fraction"].sum() * of_layer / frame.volume.sum(), 1.0, 12)
 
     def test_a_part_of_the_grains_may_show_none(self):
         (self.folder / "grain_parts/tracers").mkdir(parents=True)
