@@ -27,7 +27,7 @@ def sessions_of(folder):
     if not path.exists():
         return []
     sessions, shape_is_next = [], False
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+    for line in path.read_text(encoding="utf-8-sig", errors="replace").splitlines():
         head = HEAD.match(line)
         if head:
             sessions.append(Session(head[1]))
@@ -63,7 +63,7 @@ def warnings_of(sessions):
 
 def command_of(run):
     """The command line of the last session, from the head of case.yaml; empty where it is not there."""
-    with open(run.folder / "case.yaml", encoding="utf-8") as file:
+    with open(run.folder / "case.yaml", encoding="utf-8-sig") as file:
         for line in file:
             if line.startswith("# command "):
                 return line.removeprefix("# command ").rstrip()

@@ -149,7 +149,7 @@ class Run:
         """summary.json as a dictionary, or None while the run is going."""
         path = self.folder / "summary.json"
         try:
-            return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
+            return json.loads(path.read_text(encoding="utf-8-sig")) if path.exists() else None
         except ValueError:
             raise RunFolderError(
                 f"{path} is damaged; thalweg run ... --restart {self.folder} writes it again."

@@ -132,6 +132,18 @@ class Report(unittest.TestCase):
             self.assertIn("mpirun -n 2 thalweg run", page.text)
             self.assertEqual(re.search(r"--out \S+ --resume", page.text) is not None, not finished)
 
+    def test_files_that_were_saved_on_windows(self):
+        """With a byte-order mark and other ends of lines they say the same."""
+        self.case(head="# command thalweg run x.yaml --out run --set fluid.time_step=1e-05\n# version 0.1.0\n")
+        (self.folder / "summary.json").write_text(json.dumps({"finished": True, "simulated_time": 2.0}))
+        log = self.folder / "run.log"
+        seconds, before = log.stat().st_mtime, self.page().text
+        for name in ("case.yaml", "run.log", "series.csv", "summary.json"):
+            path = self.folder / name
+            path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+        os.utime(log, (seconds, seconds))
+        self.assertEqual(self.page().text, before)
+
     def test_the_versions_of_a_run_that_went_back_to_the_first(self):
         with open(self.folder / "run.log", "a") as log:
             log.write("Thalweg 0.1.0 (aaa): Made up\nresolved on 2 ranks\n")

@@ -283,7 +283,7 @@ def case_section(run, sessions):
     for session in sessions:
         if session.changes:
             parts += [html.paragraph(f"Changed when it continued from {session.origin}:"), html.listing(session.changes)]
-    text = (run.folder / "case.yaml").read_text(encoding="utf-8")
+    text = (run.folder / "case.yaml").read_text(encoding="utf-8-sig")
     return html.section("Case, as it was run", *parts, html.preformatted(text))
 
 

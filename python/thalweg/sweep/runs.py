@@ -73,7 +73,7 @@ class SweepRun:
     def read_summary(self):
         """None also where a crash of the machine has left half of it: the run then goes on from its checkpoint."""
         try:
-            return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+            return json.loads((self.folder / "summary.json").read_text(encoding="utf-8-sig"))
         except (FileNotFoundError, ValueError):
             return None
 
