@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from thalweg.errors import RunFolderError
+from thalweg.bed import mean_between
+from thalweg.errors import MissingName, RunFolderError
 from thalweg.units import units_of
 
 
@@ -43,10 +44,21 @@ class Sizes:
             ratio = self.surface_share / self.bed_share
         return self.q_star * ratio, self.q_star_error * ratio
 
+    def bed_stress(self):
+        """Pa: mean over the time of the rates of what the run has measured (`analysis.bed_surface`), from series.csv
+        where its own mean begins at another time; None where there is none."""
+        run, start = self.run, self.run.averaged_from("fractional_transport")
+        of_run = ((run.summary or {}).get("bed_surface") or {}).get("bed_stress_mean")
+        if run.averaged_from("bed_surface") == start:
+            return of_run
+        try:
+            return mean_between(run, "bed_stress", start, math.inf)
+        except (RunFolderError, MissingName):
+            return None
+
     def shear_velocity(self):
-        """m/s, of the mean stress on the bed that the run has measured (`analysis.bed_surface`); None where it has
-        none."""
-        stress = ((self.run.summary or {}).get("bed_surface") or {}).get("bed_stress_mean")
+        """m/s, of the mean stress on the bed; None where it is not known."""
+        stress = self.bed_stress()
         return math.sqrt(stress / self.run.section("fluid")["density"]) if stress and stress > 0.0 else None
 
     def w_star(self):

@@ -29,7 +29,7 @@ class SizesTest(made_up.MadeUpFolder):
     def setUp(self):
         super().setUp()
         (self.folder / "case.yaml").write_text(
-            made_up.CASE.replace("from: 1.0}", "from: 1.0}, fractional_transport: {from: 1.0}")
+            made_up.CASE.replace("{from: 1.0}", "{from: 1}, fractional_transport: {from: 1}, bed_surface: {from: 1}")
         )
         (self.folder / "series.csv").write_text("time [s],q_star [1]\n0,0\n1,1\n2,1\n3,1\n")
         (self.folder / "summary.json").write_text(json.dumps({"bed_surface": {"bed_stress_mean": 10.0}}))
@@ -66,6 +66,13 @@ class SizesTest(made_up.MadeUpFolder):
         np.testing.assert_allclose(sizes.finer(sizes.surface_share), [0.0, 0.2, 1.0])
         (self.folder / "summary.json").unlink()
         self.assertIsNone(Sizes(self.run_()).w_star())
+
+    def test_rates_and_stress_are_of_the_same_time(self):
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("bed_surface: {from: 1}", "bed_surface: {}"))   # from the start on
+        self.assertIsNone(Sizes(self.run_()).w_star())   # series.csv has no stress
+        (self.folder / "series.csv").write_text("time [s],bed_stress [Pa]\n0,22\n1,10\n2,11\n3,9\n")
+        self.assertAlmostEqual(Sizes(self.run_()).shear_velocity(), 0.1, 12)   # not that of a mean of 13 Pa
 
     def test_arrays_over_the_diameter(self):
         found = self.run_().fractional_transport
