@@ -26,24 +26,44 @@ def measured(run):
     return bool(np.nansum(grain_means(run)[1]) > 0.0)
 
 
-def grain_means(run):
-    """Height (m), solid fraction and velocity (m/s) of the grains along x."""
-    if "grain_profiles" in run.profiles:
-        group = run.profiles["grain_profiles"]
-        return group["z"], group["solid_fraction"], group["velocity"][:, 0]
-    if "stress_balance" in run.profiles:
-        group = run.profiles["stress_balance"]
-        return group["z"], group["solid_fraction"], group["grain_velocity"][:, 0]
+def observer_of_grains(run):
+    """The analysis whose means of the grains count."""
+    for name in ("grain_profiles", "stress_balance"):
+        if name in run.profiles:
+            return name
     raise RunFolderError(f"{run.folder / 'profiles.h5'}: it has no means of the grains yet "
                          "(analysis.grain_profiles in the case; written with every checkpoint).")
 
 
-def fluid_velocity(run):
-    """Height (m) and mean velocity (m/s) of the fluid along x; None where it was not measured."""
+def grain_means(run):
+    """Height (m), solid fraction and velocity (m/s) of the grains along x."""
+    name = observer_of_grains(run)
+    group = run.profiles[name]
+    velocity = group["velocity" if name == "grain_profiles" else "grain_velocity"]
+    return group["z"], group["solid_fraction"], velocity[:, 0]
+
+
+def observer_of_fluid(run):
+    """The analysis whose means of the fluid count, and its name of the velocity; None where it was not measured."""
     for name, velocity in (("fluid_statistics", "velocity"), ("stress_balance", "fluid_velocity")):
         if name in run.profiles and velocity in run.profiles[name]:
-            return run.profiles[name]["z"], run.profiles[name][velocity][:, 0]
+            return name, velocity
     return None
+
+
+def fluid_velocity(run):
+    """Height (m) and mean velocity (m/s) of the fluid along x; None where it was not measured."""
+    found = observer_of_fluid(run)
+    return found and (run.profiles[found[0]]["z"], run.profiles[found[0]][found[1]][:, 0])
+
+
+def begins(run):
+    """What stands behind the names of means of grains and of fluid: from when on they are, where that differs."""
+    fluid = observer_of_fluid(run)
+    times = [run.averaged_from(name) for name in (observer_of_grains(run), *(fluid or ())[:1])]
+    if len(set(times)) == 1:
+        return "", ""
+    return tuple(f", from {time:.4g} {units_of(run).named('s')} on" for time in times)
 
 
 def driving_stress(run, z, fraction):
@@ -89,7 +109,7 @@ def stresses(run):
         fluid = run.profiles["fluid_statistics"]
         share = 1.0 - np.interp(fluid["z"], z, fraction)
         reynolds = -run.section("fluid")["density"] * share * component(fluid, "reynolds_stress", "xz")
-        found.append(("fluid: resolved eddies", fluid["z"], reynolds))
+        found.append((f"fluid: resolved eddies{begins(run)[1]}", fluid["z"], reynolds))
     if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
         frames = layer_profiles(run, start=run.averaged_from("grain_profiles"))
         found.append(("rotation stress", frames["z"], frames["rotation_stress"]))
@@ -115,16 +135,16 @@ def style_of(label):
 def draw_velocities(axes, run, scaled):
     """Of grains and fluid, on a logarithmic scale, which shows the creep inside the bed as well."""
     z, fraction, velocity = grain_means(run)
-    fluid = fluid_velocity(run)
+    fluid, (grains_from, fluid_from) = fluid_velocity(run), begins(run)
     to_the_left = np.nansum(fraction * velocity if fluid is None else fluid[1]) < 0.0
 
     def on_the_way(values):
         downstream = -values if to_the_left else values
         return np.where(downstream > 0, downstream, np.nan)
 
-    curves = [("grains", "#c0392b", z, on_the_way(np.where(fraction > 0, velocity, 0.0)))]
+    curves = [(f"grains{grains_from}", "#c0392b", z, on_the_way(np.where(fraction > 0, velocity, 0.0)))]
     if fluid is not None:
-        curves.append(("fluid", "#14496e", fluid[0], on_the_way(fluid[1])))
+        curves.append((f"fluid{fluid_from}", "#14496e", fluid[0], on_the_way(fluid[1])))
     curves = [curve for curve in curves if np.isfinite(curve[3]).any()]
     for label, colour, height, values in curves:
         axes.plot(values, scaled(height), color=colour, label=label)
@@ -150,10 +170,9 @@ def draw_stresses(axes, run, scaled):
 def surface_or_floor(run, z, fraction):
     """Height (m) from which heights count, and its name: the surface of the bed, or the floor where there is none,
     because the grains reach the top, or up to less than a diameter below it, as in a shear cell."""
-    means = "grain_profiles" if "grain_profiles" in run.profiles else "stress_balance"
     try:
         surface = (
-            bed_height(run, run.averaged_from(means))
+            bed_height(run, run.averaged_from(observer_of_grains(run)))
             if more_than_the_bed(run)
             else surface_by_solid_fraction(z, fraction)
         )

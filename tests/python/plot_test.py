@@ -88,6 +88,24 @@ class Plot(unittest.TestCase):
         # The surface of six diameters of bed in layers of half a diameter.
         np.testing.assert_allclose(line.get_ydata()[0], -6.0, atol=0.01)
 
+    def test_profiles_of_grains_and_fluid_from_different_times_tell_them(self):
+        profiles, case = self.folder / "profiles.h5", self.folder / "case.yaml"
+        made_up_profiles.write_grain_profiles(profiles, made_up_run.DIAMETER)
+        with h5py.File(profiles, "a") as file:
+            group = file.create_group("fluid_statistics")
+            group["z"] = file["grain_profiles/z"][()]
+            made_up_profiles.add_ones(group, {"velocity": "x y z", "reynolds_stress": made_up_profiles.HALF}, 30)
+        text = case.read_text() + ("fluid: {density: 1000}\ngravity: {magnitude: 9.8, slope: 0.06}\n"
+                                   f"grains: [{{diameter: {made_up_run.DIAMETER}, density: 2550}}]\n")
+        for begin, grains, fluid in (("1", "", ""), ("2.5", ", from 1 s on", ", from 2.5 s on")):
+            observers = f"grain_profiles: {{from: 1}}, fluid_statistics: {{from: {begin}}}"
+            case.write_text(text.replace("{transport_rate: {from: 1.0}}", f"{{{observers}}}"))
+            figure = height_profiles.figure_of(thalweg.Run(self.folder))
+            self.addCleanup(matplotlib.pyplot.close, figure)
+            labels = [[line.get_label() for line in axes.lines] for axes in figure.axes]
+            self.assertEqual(labels[1][:2], [f"grains{grains}", f"fluid{fluid}"])
+            self.assertIn(f"fluid: resolved eddies{fluid}", labels[2])
+
     def test_profiles_that_have_not_begun_are_left_out(self):
         made_up_profiles.write_grain_profiles(self.folder / "profiles.h5", made_up_run.DIAMETER)
         with h5py.File(self.folder / "profiles.h5", "a") as file:
