@@ -1,6 +1,7 @@
 """A film of the side view: figures of the frames of a run as a .gif, an .mp4 or a folder of numbered images."""
 import contextlib
 import itertools
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -88,6 +89,17 @@ def write_mp4(pictures, path, rate):
         raise RunFolderError(f"{path}: ffmpeg ended with exit code {ffmpeg.returncode}.")
 
 
+def write_images(pictures, folder):
+    """Numbered from 0 on; those that a longer film has left in the folder go."""
+    written = set()
+    for number, picture in enumerate(pictures):
+        written.add(folder / f"image_{number:05d}.png")
+        plt.imsave(folder / f"image_{number:05d}.png", picture)
+    for path in set(folder.iterdir()) - written:
+        if re.fullmatch(r"image_\d{5,}\.png", path.name):
+            path.unlink()
+
+
 def write_film(run, frames, path, rate=20.0, width=900):
     """A film of the frames, `rate` of them a second, `width` pixels wide: an .mp4, which takes ffmpeg, a .gif, or else
     a folder of images."""
@@ -109,5 +121,4 @@ def write_film(run, frames, path, rate=20.0, width=900):
     elif path.suffix:
         raise RunFolderError(f"{path}: give a .gif, an .mp4 or a folder.")
     else:
-        for number, picture in enumerate(pictures):
-            plt.imsave(path / f"image_{number:05d}.png", picture)
+        write_images(pictures, path)

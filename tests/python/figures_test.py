@@ -113,7 +113,14 @@ class Figures(made_up.MadeUpFolder):
         self.assertEqual(self.plot("film", "--width", "300", "--rate", "40").returncode, 0)
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual(sum(picture.info["duration"] for picture in ImageSequence.Iterator(film)), 200)
-        self.assertEqual(len(list((self.folder / "film").glob("*.png"))), 4)
+        names = [f"image_{n:05d}.png" for n in range(4)]
+        self.assertEqual(sorted(path.name for path in (self.folder / "film").iterdir()), names)
+        (self.folder / "film/image_of_mine.png").touch()   # a shorter film leaves none of the images of the longer one
+        done = self.plot("film", "--out", self.folder / "film", "--every", "0.4", "--width", "300")
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(
+            sorted(path.name for path in (self.folder / "film").iterdir()), names[:2] + ["image_of_mine.png"]
+        )
         self.refused(self.plot("film", "--from", "5"), "no frame of the grains in this time")
         for option, value, words in (("--rate", "0", "above 0"), ("--rate", "60", "at most 50 images"),
                                      ("--width", "0", "100 to 10000 pixels")):
