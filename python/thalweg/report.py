@@ -72,7 +72,7 @@ def write_columns(path, columns, units):
         headings += [f"{name}{part} [{units.named(columns.units[name])}]" for part in parts]
         values.append(flat)
     with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
+        writer = csv.writer(file, lineterminator="\n")
         writer.writerow(headings)
         writer.writerows([f"{value:.9g}" for value in row] for row in np.hstack(values))
 

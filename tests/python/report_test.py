@@ -63,6 +63,7 @@ class Reports(made_up.MadeUpFolder):
         self.assertAlmostEqual(static["shields"], np.sin(np.arctan(0.0748)) * radius / (1.55 * D), 9)
         self.assertAlmostEqual(report.numbers["surface_by_solid_fraction"]["bed_height"], 10.0 * D, delta=0.5 * D)
         files = report.write(self.folder / "out")
+        self.assertNotIn(b"\r", files[1].read_bytes())
         self.assertEqual([file.name for file in files], ["summary.json", "layers.csv", "visible_grains.csv"])
         self.assertEqual(json.loads(files[0].read_text()), report.numbers)
         layers = read_series(files[1])
