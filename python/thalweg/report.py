@@ -19,6 +19,7 @@ from thalweg.transport import column_of, sentence_of_column, state_of_column, sy
 from thalweg.units import units_of
 from thalweg.visible_profiles import visible_profiles
 
+TABLES = "layers", "visible_grains"   # names of profiles
 VISIBLE_FRAMES = 20   # the most that are looked at pixel by pixel
 
 
@@ -42,14 +43,16 @@ class Report:
             self.say(name, f"left out: {error}")
 
     def write(self, folder):
-        """summary.json with the numbers (SI units, or grain units where the case has them) and a table for each profile.
-        Returns the files."""
+        """summary.json with the numbers (SI units, or grain units where the case has them) and a table for each profile;
+        a table of other times that has no new one is removed. Returns the files."""
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "summary.json"]
         files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         for name, columns in self.profiles.items():
             files.append(folder / f"{name}.csv")
             write_columns(files[-1], columns, units_of(self.run))
+        for name in set(TABLES) - set(self.profiles):
+            (folder / f"{name}.csv").unlink(missing_ok=True)
         return files
 
 

@@ -76,6 +76,15 @@ class Reports(made_up.MadeUpFolder):
         self.assertEqual(read_series(report_of(thalweg.Run(self.folder)).write(self.folder / "out")[1]).units["velocity_x"],
                          "sqrt(g'D)")
 
+    def test_no_table_of_other_times_stays_beside_a_new_summary(self):
+        self.write_bed()
+        out, mine = self.folder / "out", self.folder / "out/mine.csv"
+        report_of(thalweg.Run(self.folder)).write(out)
+        mine.touch()
+        (self.folder / "grains.pvd").unlink()
+        self.assertEqual(report_of(thalweg.Run(self.folder)).write(out), [out / "summary.json"])
+        self.assertEqual(sorted(out.iterdir()), [mine, out / "summary.json"])
+
     def test_rows_without_a_number_do_not_count(self):
         rows = [f"{t:.6g},{q},{n}" for t, q, n in zip(np.arange(0.0, 4.005, 0.01), self.rate, [4, 6] * 201)]
         rows[250], rows[300] = "2.5,nan,nan", "3,0.1,nan"
