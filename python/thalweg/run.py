@@ -28,6 +28,8 @@ class Run:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+        if self.folder.name in ("", ".."):   # its name is that of the run
+            self.folder = self.folder.resolve()
         if not (self.folder / "case.yaml").exists():
             raise RunFolderError(f"{self.folder}: there is no case.yaml in it; give the folder of a run.")
 

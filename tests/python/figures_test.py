@@ -1,4 +1,5 @@
 """thalweg plot draws a run folder, and says in one sentence what is missing."""
+import contextlib
 import csv
 import os
 import shutil
@@ -16,7 +17,9 @@ from made_up_folder import ROOT
 
 sys.path.insert(0, str(ROOT / "tests/support"))
 import made_up_profiles
+from thalweg.__main__ import main
 from thalweg.figures import relation
+from thalweg.tables import read_rows
 
 D = 4.95e-3
 
@@ -80,6 +83,13 @@ class Figures(made_up.MadeUpFolder):
         with open(table, newline="") as file:
             row, = csv.DictReader(file)
         self.assertEqual((row["q_star [1]"], row["error [1]"]), ("0.0500", ""))
+
+    def test_a_run_in_the_table_has_the_name_of_its_folder_wherever_it_is_drawn_from(self):
+        self.write_profiles()
+        out, table = self.folder / "relation.png", self.folder / "runs.csv"
+        with contextlib.chdir(self.folder):
+            self.assertEqual(main(["plot", "relation", ".", "--out", str(out), "--table", str(table)]), 0)
+        self.assertEqual([row["run"] for row in read_rows(table)], ["run"])
 
     def test_what_a_camera_sees(self):
         out = self.folder / "visible.png"

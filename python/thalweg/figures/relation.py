@@ -130,6 +130,7 @@ def figure_of(rows):
 def draw(folders, start, stop, surface, table):
     """The figure of these runs, after the printed table; start, stop: of the means, s, or None; table: a file, or
     None."""
+    folders = [Run(folder).folder for folder in folders]
     found = [measure(folder, start, stop, surface) for folder in folders]
     if found:
         print_table(folders, found)
