@@ -2,8 +2,8 @@
 from pathlib import Path
 
 import numpy as np
-import yaml
 
+from thalweg.case_file import read_case
 from thalweg.errors import RunFolderError
 from thalweg.stl import read_stl
 
@@ -76,7 +76,7 @@ class View:
 
 def read_spheres(path):
     """Centres and radii, m, of the shape that `thalweg clump` has written."""
-    spheres = yaml.safe_load(path.read_text(encoding="utf-8"))["shape"]["clump"]
+    spheres = read_case(path)["shape"]["clump"]
     return np.array([s["position"] for s in spheres], float), np.array([s["diameter"] for s in spheres]) / 2.0
 
 

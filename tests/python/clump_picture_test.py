@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import made_up_folder  # puts the package on the path
-from thalweg.clump_picture import views_of
+from thalweg.clump_picture import read_spheres, views_of
 from thalweg.stl import read_stl, write_stl
 
 SHAPES = Path(__file__).resolve().parents[2] / "cases/shapes"
@@ -34,6 +34,15 @@ class ClumpPicture(unittest.TestCase):
         front = next(views_of(corners, centres[1:], radii[1:]))[1]
         np.testing.assert_array_equal(np.isfinite(both), np.isfinite(front))
         np.testing.assert_array_equal(both, front)
+
+    def test_small_spheres(self):
+        """Whose diameters the program writes without a point."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "silt.yaml"
+            path.write_text("shape:\n  clump:\n    - {position: [0, 1e-05, 0], diameter: 5e-05}\n", encoding="utf-8")
+            centres, radii = read_spheres(path)
+        np.testing.assert_array_equal(centres, [[0.0, 1e-5, 0.0]])
+        np.testing.assert_array_equal(radii, [2.5e-5])
 
     def test_text_and_binary_files_are_the_same_surface(self):
         corners = read_stl(SHAPES / "pebble.stl")
