@@ -8,6 +8,7 @@ import unittest.mock
 
 from sweep_folder import BISECT, Folder
 from thalweg.__main__ import main
+from thalweg.history import sessions_of
 from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError
 from thalweg.sweep.runner import Runner
@@ -215,6 +216,24 @@ class Results(Folder):
         self.assertIn("no number q_star in summary.json, but figures.q_star.", plan.lacks(self.CONTINUUM))
         self.assertIn("only finished, steps,", plan.lacks(self.RESOLVED))
         self.assertIsNone(self.plan(bisect=BISECT).lacks(self.RESOLVED))
+
+
+class Logs(Folder):
+    def test_a_log_is_read_once_for_all_tables(self):
+        """They are written whenever a run ends."""
+        plan = self.plan(vary={"a": [1, 2]})
+        tasks = tasks_of(plan, self.folder)
+        for task in tasks:
+            task.run.folder.mkdir(parents=True)
+            (task.run.folder / "run.log").write_text("Thalweg 0.1.0 (aaa): a\nshape\nwarning: It is long.\n")
+        with unittest.mock.patch("thalweg.sweep.runs.sessions_of", side_effect=sessions_of) as read:
+            for _ in range(3):
+                tables.write_tables(plan, tasks, {}, self.folder)
+            self.assertEqual(read.call_count, 2)
+            self.assertEqual(tasks[0].run.warnings, ["It is long."])
+            with open(tasks[0].run.folder / "run.log", "a") as log:
+                log.write("warning: It is wide.\n")
+            self.assertEqual(tasks[0].run.warnings, ["It is long.", "It is wide."])
 
 
 class Units(unittest.TestCase):

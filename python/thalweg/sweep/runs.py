@@ -6,6 +6,7 @@ runs/NAME.txt    what the program said; locked while the run is going and until 
 """
 import ctypes
 import fcntl
+import functools
 import hashlib
 import json
 import os
@@ -16,7 +17,7 @@ from pathlib import Path
 
 from thalweg.case_file import setting_of
 from thalweg.history import sessions_of, warnings_of
-from thalweg.sweep.inputs import SweepError, inputs_of
+from thalweg.sweep.inputs import SweepError, inputs_of, state_of
 from thalweg.tables import replace_text
 
 LONGEST_NAME = (
@@ -105,7 +106,8 @@ class SweepRun:
     @property
     def warnings(self):
         """What the run has warned of in all its sessions, each once."""
-        return warnings_of(sessions_of(self.folder))
+        log = self.folder / "run.log"
+        return warnings_in(self.folder, state_of(log) if log.exists() else None)
 
     def command(self, program):
         arguments = ["run", str(self.case), f"--out={self.folder}", "--resume"] + set_options(self.settings)
@@ -152,6 +154,12 @@ class SweepRun:
     def remember(self, failure):
         self.failure = failure
         replace_text(self.note, json.dumps(self.inputs | {"failure": failure}, indent=1) + "\n")
+
+
+@functools.lru_cache(maxsize=None)
+def warnings_in(folder, _state):
+    """Of a run, read again where its log has changed."""
+    return warnings_of(sessions_of(folder))
 
 
 def launcher():
