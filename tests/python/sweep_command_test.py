@@ -13,7 +13,7 @@ from thalweg.sweep import command, machine, tables
 from thalweg.sweep.inputs import SweepError
 from thalweg.sweep.runner import Runner
 from thalweg.sweep.runs import FAILED, launcher
-from thalweg.sweep.tasks import result_columns, tasks_of
+from thalweg.sweep.tasks import PointTask, result_columns, tasks_of
 from thalweg.sweep.warnings import grouped
 
 
@@ -51,6 +51,19 @@ class AfterAnError(Folder):
         with unittest.mock.patch.object(runner, "report", fail), self.assertRaisesRegex(SweepError, "has been changed"):
             runner.work()
         self.assertEqual((self.folder / "saved").read_text(), "saved\n")
+
+
+class Looks(Folder):
+    def test_tasks_are_asked_what_they_want_when_a_run_has_ended(self):
+        program = self.folder / "program"
+        program.write_text("#!/bin/sh\nsleep 0.6\nexit 1\n")
+        program.chmod(0o755)
+        plan = self.plan(vary={"a": [1, 2]})
+        runner = Runner(plan, tasks_of(plan, self.folder), {}, str(program), self.folder, 2)
+        quiet = contextlib.redirect_stdout(io.StringIO())
+        with unittest.mock.patch.object(PointTask, "spare", return_value=[]) as asked, quiet:
+            self.assertTrue(runner.work())
+        self.assertLessEqual(asked.call_count, 2 * 3)   # at the start and after each of the runs, of two tasks
 
 
 class TwoSweepsOfAFolder(Folder):

@@ -22,6 +22,7 @@ class Runner:
         self.jobs = jobs
         self.going = {}   # by run: (process, when it was started)
         self.dropped = set()   # going, asked to stop because the others have settled what they were to show
+        self.found = None   # runs that are wanted, until one of them changes
         self.stopping = False
         self.printed, self.said = 0.0, None
         if retry:
@@ -63,8 +64,10 @@ class Runner:
             process.send_signal(signal.SIGUSR1)
 
     def wanted(self):
-        return ([run for task in self.tasks for run in task.wanted()] +
-                [run for task in self.tasks for run in task.spare()])
+        if self.found is None:
+            self.found = [run for task in self.tasks for run in task.wanted()]
+            self.found += [run for task in self.tasks for run in task.spare()]
+        return self.found
 
     def waiting(self):
         return [run for run in self.wanted() if run not in self.going]
@@ -79,7 +82,9 @@ class Runner:
             if self.stopping or len(self.going) >= self.jobs:
                 return
             process = run.start(self.program)
-            if process:
+            if not process:
+                self.found = None   # another sweep may have ended it
+            else:
                 self.going[run] = (process, time.monotonic())
                 if self.stopping:   # a signal came while it was being started
                     process.send_signal(signal.SIGUSR1)
@@ -90,6 +95,7 @@ class Runner:
             process, _ = self.going.pop(run)
             self.take_note_of(run, process.returncode)
             run.release()
+            self.found = None
         if ended and self.tables:
             write_tables(self.plan, self.tasks, self.units, self.folder)
 
