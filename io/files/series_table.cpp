@@ -21,6 +21,15 @@
 namespace thalweg::io {
 namespace {
 
+// The text of a file as the program writes it, without what other programs add: a byte-order mark, and the ends of
+// lines of Windows.
+std::string plain_text(const std::filesystem::path& path) {
+  std::string text = read_text(path);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  std::erase(text, '\r');
+  return text;
+}
+
 struct KeptRows {
   std::string text;
   std::vector<double> times;  // s
@@ -111,14 +120,14 @@ void act(MPI_Comm communicator, const std::filesystem::path& path, const std::fu
 void SeriesTable::check_columns(MPI_Comm communicator, const std::filesystem::path& path,
                                 const SeriesColumns& columns) {
   act(communicator, path, [&] {
-    if (std::filesystem::exists(path)) refuse_other_columns(path, read_text(path), columns.header() + "\n");
+    if (std::filesystem::exists(path)) refuse_other_columns(path, plain_text(path), columns.header() + "\n");
   });
 }
 
 void SeriesTable::drop_rows_after(MPI_Comm communicator, const std::filesystem::path& path, double time) {
   act(communicator, path, [&] {
     if (!std::filesystem::exists(path)) return;
-    const std::string text = read_text(path);
+    const std::string text = plain_text(path);
     const std::size_t end = text.find('\n');  // of the header
     if (end != std::string::npos)
       write_text_durably(path, text.substr(0, end + 1) + kept_rows(text, end + 1, time).text);
@@ -132,7 +141,7 @@ SeriesTable::SeriesTable(MPI_Comm communicator, std::filesystem::path path, Seri
     const std::string header = columns_.header() + "\n";
     std::string rows;
     if (continue_from && std::filesystem::exists(path_)) {
-      const std::string text = read_text(path_);
+      const std::string text = plain_text(path_);
       refuse_other_columns(path_, text, header);
       if (!text.empty()) {
         const KeptRows kept = kept_rows(text, header.size(), *continue_from);

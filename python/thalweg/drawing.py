@@ -28,8 +28,8 @@ def refuse_column(run):
 
 
 def frames_at(run, time=None):
-    """The stored frames of grains and fluid that are nearest to a time (s) and to each other, without a time the last of
-    which both are stored; None for what is not."""
+    """The stored frames of grains and fluid that are nearest to a time (s) and to each other, without a time the last
+    of which both are stored; None for what is not."""
     refuse_column(run)
     if time is None and run.fluid:
         time = run.fluid.times[-1]
@@ -139,8 +139,8 @@ def title_of(run, time):
 
 
 def time_of_its_own(run, fluid, time):
-    """What stands below the name of the scale of the fluid in a picture at a time (s): when its frame was, where that is
-    another time."""
+    """What stands below the name of the scale of the fluid in a picture at a time (s): when its frame was, where that
+    is another time."""
     own = time_in_words(run, fluid.time)
     return "" if own == time_in_words(run, time) else f"\nat {own}"
 
@@ -243,8 +243,8 @@ def flow_figure(run, fluid, largest_flow=None):
 
 
 def draw_water(figure, axes, bar, layer, unit, largest=None, when=""):
-    """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed. when: below the
-    name of the scale."""
+    """A layer of fluid_slice() with its scale, which ends at `largest` (m/s) or at its own largest speed. when: below
+    the name of the scale."""
     flow, box, solid = layer
     extent = unit.per_length * np.array(box)
     water = axes.imshow(unit.per_speed * without_holes(flow), origin="lower", extent=extent, cmap=FLUID_COLOURS,

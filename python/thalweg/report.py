@@ -43,8 +43,8 @@ class Report:
             self.say(name, f"left out: {error}")
 
     def write(self, folder):
-        """summary.json with the numbers (SI units, or grain units where the case has them) and a table for each profile;
-        a table of other times that has no new one is removed. Returns the files."""
+        """summary.json with the numbers (SI units, or grain units where the case has them) and a table for each
+        profile; one of other times is removed where there is no new one. Returns the files."""
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "summary.json"]
         files[0].write_text(json.dumps(without_nan(self.numbers), indent=2, allow_nan=False) + "\n", encoding="utf-8")

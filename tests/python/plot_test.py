@@ -248,8 +248,8 @@ class Plot(unittest.TestCase):
     def test_grains_and_flow_of_different_times(self):
         """There are grains at 0 and 3 s; the flow tells its time where the grains have another one."""
         for flow, wanted, title, when in (
-            (3.0, None, "t = 3 s", ""), (3.0, 0.0, "t = 0 s", "\nat t = 3 s"), (1.25, None, "t = 0 s", "\nat t = 1.25 s"),
-            (2.99999, None, "t = 3 s", ""),
+            (3.0, None, "t = 3 s", ""), (3.0, 0.0, "t = 0 s", "\nat t = 3 s"), (2.99999, None, "t = 3 s", ""),
+            (1.25, None, "t = 0 s", "\nat t = 1.25 s"),
         ):
             made_up_run.write_index(self.folder / "fluid.pvd", [(flow, "fluid/fluid_30000.vti")])
             run = thalweg.Run(self.folder)

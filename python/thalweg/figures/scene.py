@@ -241,8 +241,8 @@ def picture_of(run, grains, fluid, direction, pixels):
 
 
 def draw(run, path, time, direction, pixels):
-    """Writes a .png of the frames nearest to a time (s; None: as in frames_at). direction: from which to look; pixels: width
-    and height."""
+    """Writes a .png of the frames nearest to a time (s; None: as in frames_at). direction: from which to look; pixels:
+    width and height."""
     if not 0.0 < np.linalg.norm(direction) < np.inf:
         raise RunFolderError(
             f"--view {' '.join(f'{n:g}' for n in direction)}: this is not a direction; give three numbers, not all zero."

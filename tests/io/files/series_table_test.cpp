@@ -49,6 +49,18 @@ TEST(SeriesTable, ARestartDropsWhatCameAfterIt) {
   EXPECT_EQ(contents(path), "time [s],q_star [1],speed [m/s]\n0,0,0\n0.25,1,2\n0.5,2,4\n0.6,7,8\n");
 }
 
+TEST(SeriesTable, ARestartGoesOnWithAFileFromWindows) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "series.csv";
+  if (rank_of(MPI_COMM_WORLD) == 0)
+    testing::put(path, "\xEF\xBB\xBFtime [s],q_star [1],speed [m/s]\r\n0,0,0\r\n0.25,1,2\r\n0.5,2,4\r\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  SeriesTable::check_columns(MPI_COMM_WORLD, path, columns);
+  SeriesTable table(MPI_COMM_WORLD, path, columns, 0.25);
+  table.append(0.3, row(7.0, 8.0));
+  EXPECT_EQ(contents(path), "time [s],q_star [1],speed [m/s]\n0,0,0\n0.25,1,2\n0.3,7,8\n");
+}
+
 // Rows every 0.1 s, the last of a run at 0.25 s and the next at 0.3 s.
 TEST(SeriesTable, TellsThatRowsAreMissing) {
   const ScratchFolder folder;
