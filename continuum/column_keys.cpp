@@ -95,7 +95,7 @@ void describe(SectionVisitor& visit, CreepParameters& creep) {
              {.unit = "diameters",
               .meaning = "depth below the surface where the fluidity is given",
               .above = 0.0,
-              .below = creep_decay_depth});
+              .at_most = creep_decay_depth - 1.0});  // the decay is fitted over a diameter at least
   visit.real("lower", creep.lower, {.unit = "diameters", .meaning = "depth where it is zero", .above = 0.0});
   visit.require(creep.lower > creep.upper, "lower", "it must be deeper than upper; give for example 10");
   visit.real("surface_fluidity", creep.surface_fluidity,

@@ -25,8 +25,9 @@ inline constexpr double creep_decay_depth = 7.0;  // diameters: the decay length
 struct CreepParameters {
   double nonlocal_amplitude = 0.43;             // A
   std::optional<double> rate_coefficient = {};  // b'; else local_rate_coefficient()
-  double upper = 2.0, lower = 10.0;  // diameters below the surface: the ends; upper is above creep_decay_depth
-  double surface_fluidity = 1e-2;    // 1/s, at the upper end
+  double upper = 2.0,
+         lower = 10.0;  // diameters below the surface: the ends; upper is one above creep_decay_depth or more
+  double surface_fluidity = 1e-2;  // 1/s, at the upper end
   bool operator==(const CreepParameters&) const = default;
 };
 

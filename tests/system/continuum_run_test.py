@@ -194,6 +194,7 @@ output: {series: {every: 5}, checkpoint: {every: 5, keep: 30}}
                 ("column.bed=6e8", ["column.bed", "more than 100000 cells", "thinner bed"]),
                 ("closures.drag=stokes", ["closures.drag", "mobile"]),
                 ("creep.lower=1", ["creep.lower", "deeper than upper"]),
+                ("creep.upper=6.999", ["creep.upper", "at most 6"]),   # nothing is left to fit the decay to
                 ("domain.spacing=1e-3", ["domain", "has no box"]),
                 ("analysis.transport_rate.from=1", ["analysis", "remove the section"]),
                 ("gravity={vector: [0.4, 0.1, -9.7]}", ["gravity", "along y"]),
