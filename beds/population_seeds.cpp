@@ -17,7 +17,7 @@ namespace {
 
 Region region_of(const PlacementKeys& placement, const PeriodicBox& box) {
   if (!placement.region) return whole(box);
-  return {placement.region->lower, placement.region->upper};
+  return {placement.region->lower, placement.region->upper.cwiseMin(box.size)};
 }
 
 // Number in the list of assemblies; -1: none.

@@ -19,7 +19,7 @@ namespace {
 
 // Disks stay in the middle of the box.
 dem::Zone zone_of(const RegionKeys& region, bool disks, const Vec3& box_size) {
-  dem::Zone zone{region.lower, region.upper};
+  dem::Zone zone{region.lower, region.upper.cwiseMin(box_size)};
   if (disks) zone.lower[1] = zone.upper[1] = 0.5 * box_size[1];
   return zone;
 }

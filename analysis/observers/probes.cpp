@@ -108,7 +108,7 @@ void describe(SectionVisitor& visit, ProbesKeys& keys) {
 namespace {
 
 void require_inside(const Vec3& point, const PeriodicBox& box, const std::string& key) {
-  if ((point.array() >= 0.0).all() && (point.array() <= box.size.array()).all()) return;
+  if (lies_in_box(point, box.size)) return;
   throw KeyError(key, fmt::format("the box goes from 0 to ({:g}, {:g}, {:g}) m; give a point in it", box.size.x(),
                                   box.size.y(), box.size.z()));
 }

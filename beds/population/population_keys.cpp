@@ -1,6 +1,7 @@
 // The keys of a population, and whether they fit its box.
 #include "beds/packing/packing.hpp"
 #include "beds/population/population.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "core/keys/key_error.hpp"
 #include "dem/supply/supply.hpp"
 
@@ -213,7 +214,7 @@ bool stays_in_plane(const dem::MotionKeys& motion) {
 void check_placement(const Population& population, const Vec3& box_size, bool disks) {
   const PlacementKeys& placement = population.placement;
   for (std::size_t p = 0; p < placement.positions.size(); ++p)
-    if (!dem::Zone{Vec3::Zero(), box_size}.holds(placement.positions[p]))
+    if (!lies_in_box(placement.positions[p], box_size))
       throw KeyError(fmt::format("placement.positions.{}", p),
                      fmt::format("the grain is outside the box; give a point in m between [0, 0, 0] and [{}, {}, {}]",
                                  box_size[0], box_size[1], box_size[2]));

@@ -8,6 +8,15 @@
 
 namespace thalweg {
 
+// Sides of a box are whole numbers of cells to within this share of them: those of cells of a third of a millimetre are
+// not quite the lengths that were asked for.
+inline constexpr double whole_number_tolerance = 1e-6;
+
+// True for a point in a box of this size, on its faces, and beyond them by no more than that.
+inline bool lies_in_box(const Vec3& point, const Vec3& size) {
+  return (point.array() >= 0.0).all() && (point.array() <= (1.0 + whole_number_tolerance) * size.array()).all();
+}
+
 struct PeriodicBox {
   Vec3 size = Vec3::Zero();  // in the caller's unit of length
   std::array<bool, 3> periodic{false, false, false};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "dem/clumps/clump_seed.hpp"
 
 #include <cstdint>
@@ -19,12 +20,9 @@ struct Zone {
   bool holds(const Vec3& point) const {
     return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
   }
-  // True if it lies in a box of this size (m) with its lower corner nowhere above the upper one. A whole number of
-  // cells of a third of a millimetre is not quite the length that was asked for.
+  // True if it lies in a box of this size (m) with its lower corner nowhere above the upper one.
   bool is_in(const Vec3& box_size) const {
-    constexpr double rounding = 1e-9;
-    return (lower.array() >= 0.0).all() && (upper.array() <= (1.0 + rounding) * box_size.array()).all() &&
-           (lower.array() <= upper.array()).all();
+    return (lower.array() >= 0.0).all() && lies_in_box(upper, box_size) && (lower.array() <= upper.array()).all();
   }
 };
 

@@ -1,7 +1,7 @@
 #include "driver/case/grain_setup.hpp"
 
 #include "beds/population_seeds.hpp"
-#include "driver/case/axes.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "driver/case/solid_setup.hpp"
 
 #include <algorithm>

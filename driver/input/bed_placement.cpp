@@ -72,10 +72,6 @@ void fill_in_grains(Case& c, const io::YamlDocument& document, const KnownBeds& 
   const PeriodicBox box = grain_box(c);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}", n);
-    if (std::optional<beds::RegionKeys>& region = c.grains[n].placement.region)
-      for (int axis = 0; axis < 3; ++axis)
-        if (region->upper[axis] <= c.domain.size[axis])
-          region->upper[axis] = std::min(region->upper[axis], box.size[axis]);
     // Each population gets its own seed, so that grain n of two of them does not get the same position.
     if (!document.find(key + ".placement.seed")) c.grains[n].placement.seed = static_cast<std::int64_t>(n) + 1;
     std::optional<Bed> bed;

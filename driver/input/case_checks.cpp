@@ -1,6 +1,7 @@
 #include "driver/input/case_checks.hpp"
 
 #include "core/base/schedule.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "dem/motion/walls.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/case/solid_setup.hpp"

@@ -1,6 +1,6 @@
 #include "driver/warnings/case_warnings.hpp"
 
-#include "driver/case/axes.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"

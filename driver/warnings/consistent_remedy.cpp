@@ -57,11 +57,12 @@ std::string ConsistentRemedies::sentence_of(const Warning& warning, std::size_t 
     const std::optional<Remedy> remedy = useful(advice, rule);
     if (!remedy || std::any_of(said.begin(), said.end(), [&](const Remedy& one) { return has_all(*remedy, one); }))
       continue;
-    remedies += (remedies.empty() ? "" : ", or ") + advice.lead + text_of(*remedy);
+    const std::string verb = remedies.empty() && advice.lead.empty() ? "consider " : advice.lead;
+    remedies += (remedies.empty() ? "" : ", or ") + verb + text_of(*remedy);
     said.push_back(*remedy);
   }
-  if (remedies.empty()) remedies = warning.otherwise;
-  return warning.sentence + (remedies.empty() ? "." : ": consider " + remedies + ".");
+  if (remedies.empty() && !warning.otherwise.empty()) remedies = "consider " + warning.otherwise;
+  return warning.sentence + (remedies.empty() ? "" : ": " + remedies) + ".";
 }
 
 std::optional<Remedy> ConsistentRemedies::useful(const Advice& advice, std::size_t rule) const {

@@ -1,5 +1,6 @@
 #include "driver/warnings/remedy.hpp"
 
+#include "core/geometry/periodic_box.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/filled_in.hpp"
 

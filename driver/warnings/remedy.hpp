@@ -31,7 +31,7 @@ Remedy joined(Remedy first, const Remedy& second);
 // One of several remedies of a warning.
 struct Advice {
   Remedy remedy;
-  std::string lead;  // before its text, as "accept it with "
+  std::string lead;  // before its text, as "accept it with "; else "consider " before the first
 };
 
 // A warning with its remedies, the best first. They need not be consistent with the rest of the case: one may lead to

@@ -1,5 +1,6 @@
 #include "io/vtk/fluid_region.hpp"
 
+#include "core/geometry/periodic_box.hpp"
 #include "core/keys/key_error.hpp"
 
 #include <fmt/format.h>
@@ -75,13 +76,13 @@ int divided_up(int number, int by) { return (number + by - 1) / by; }
 void check(const FluidRegionKeys& keys, const Vec3& box_size, double spacing) {
   if (keys.plane) {
     const int axis = static_cast<int>(keys.plane->axis);
-    if (!(keys.plane->at >= 0.0 && keys.plane->at <= box_size[axis]))
+    if (!(keys.plane->at >= 0.0 && keys.plane->at <= (1.0 + whole_number_tolerance) * box_size[axis]))
       throw KeyError("plane.at", fmt::format("the plane is outside the domain; give a place in m between 0 and {:g}",
                                              box_size[axis]));
   }
   if (!keys.box) return;
   const Vec3 &lower = keys.box->lower, &upper = keys.box->upper;
-  if ((lower.array() < 0.0).any() || !(upper.array() <= box_size.array() + rounding * spacing).all())
+  if ((lower.array() < 0.0).any() || !lies_in_box(upper, box_size))
     throw KeyError("box",
                    fmt::format("the box reaches out of the domain; give corners in m between [0, 0, 0] and [{:g}, "
                                "{:g}, {:g}]",

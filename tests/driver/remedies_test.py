@@ -282,7 +282,7 @@ KEY = r"(?<![\w.])((?:[a-z_]+\.)+[a-z0-9_.]*[a-z0-9_]): (\{[^}]*\}|\[[^\]]*\]|[^
 
 def remedies_in(text):
     """The alternatives that a sentence gives, each as (key, value) pairs."""
-    found = re.split(r": consider |; give |; consider ", text)
+    found = re.split(r": consider |; give |; consider |: (?=accept it with )", text)
     if len(found) == 1:
         return []
     return [pairs for part in found[-1].split(", or ")

@@ -45,6 +45,19 @@ TEST(CaseReader, ReadsWhatTheFileSays) {
   EXPECT_EQ(c.analysis.observers.of<analysis::TransportRateKeys>()->from, 1.0);
 }
 
+// A spacing with few digits, as that of a third of a millimetre, makes the box a little smaller than its size.
+TEST(CaseReader, WhatEndsAtTheSizeOfTheBoxIsInIt) {
+  const std::string all = "{lower: [0, 0, 0], upper: [0.06, 0.0105, 0.075]}";
+  EXPECT_NO_THROW(read(
+      flume, {"domain.spacing=0.4999999e-3", "grains.0.placement.region=" + all,
+              "grains.1.placement.positions.1=[0.06, 0.005, 0.06]",
+              "supplies=[{population: 0, rate: 10, region: " + all + "}]",
+              "sinks=[{region: " + all + ", recirculation: {region: " + all + "}}]", "output.fluid.region=null",
+              "output.fluid.box=" + all, "output.fluid_parts=[{name: end, every: 0.1, plane: {axis: x, at: 0.06}}]",
+              "analysis.probes={points: [[0.06, 0.0105, 0.075]], lines: [{from: [0, 0, 0], to: [0.06, 0.0105, 0.075], "
+              "points: 3}]}"}));
+}
+
 TEST(CaseReader, GrainsAndFluidMayComeFromTwoRuns) {
   const Case none = read(flume);
   EXPECT_TRUE(none.initial.from.none());
