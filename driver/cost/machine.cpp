@@ -22,7 +22,7 @@ double seconds_of_process() { return static_cast<double>(std::clock()) / CLOCKS_
 // Bytes per second that this process reads and writes updating the array, which lies in huge pages as the lattice does.
 // seconds: of a clock.
 double bandwidth_on(std::span<double> array, double (*seconds)()) {
-  constexpr double patience = 0.08;  // s
+  constexpr double patience = 0.03;  // s, two passes or three
   const double begin = seconds();
   double fastest = 1e9;
   do {
