@@ -99,7 +99,7 @@ TEST(EnclosedCells, AreFoundAcrossBorders) {
     return true;
   };
   int alone = 0, in_pairs = 0;
-  for (int round = 0; round < 15; ++round) {
+  for (int round = 0; round < 20; ++round) {
     for (Ball& ball : balls)
       ball.centre = box.wrapped(ball.centre + Vec3(0.3 * uniform(generator), 0.3 * uniform(generator), 0.0));
     for (std::deque<OneBlock>& blocks : ranks) {
