@@ -13,8 +13,7 @@ namespace {
 constexpr double no_grains = 1e-5;
 // Weight of the mean over a cell and its neighbours; where phi changes little, it adds half its square to the inertia.
 constexpr double share_of_neighbours = 0.02;
-// Shear speeds of the mixture, below which the drag function no longer changes with the velocity along the bed alone.
-constexpr double slowest = 0.036;
+constexpr double slowest_over_shear = 0.036;  // shear speed of the mixture
 
 double positive(double fraction) { return 0.5 * (fraction + std::hypot(fraction, no_grains)); }
 
@@ -42,7 +41,8 @@ std::vector<NamedChoice<DragSpeed>> choices_of(DragSpeed) {
           {DragSpeed::streamwise, "streamwise", "|U_s - U_f|"}};
 }
 
-ColumnEquations::ColumnEquations(const ColumnParameters& parameters) : parameters_(parameters) {
+ColumnEquations::ColumnEquations(const ColumnParameters& parameters)
+    : parameters_(parameters), slowest_(slowest_over_shear * parameters.shear_speed()) {
   const auto cells = static_cast<std::size_t>(parameters.cells);
   for (std::vector<double>* values : {&state_.fraction, &state_.grain_velocity, &state_.fluid_velocity, &pressure_})
     values->assign(cells, 0.0);
@@ -151,8 +151,7 @@ void ColumnEquations::find_fluxes() const {
 }
 
 double ColumnEquations::drag_speed(double along, double drift) const {
-  return std::hypot(along,
-                    parameters_.closures.speed == DragSpeed::total ? drift : slowest * parameters_.shear_speed());
+  return std::hypot(along, parameters_.closures.speed == DragSpeed::total ? drift : slowest_);
 }
 
 // The solid fraction that the stress on the faces accelerates: in a cell with hardly any grains beside one with many,

@@ -77,6 +77,7 @@ private:
   double drag_rate_in(int cell) const;
 
   ColumnParameters parameters_;
+  double slowest_;  // m/s, below which the drag function no longer changes with the velocity along the bed alone
   // Filled anew by every call.
   mutable ColumnState state_;
   mutable ColumnFluxes fluxes_;

@@ -3,7 +3,6 @@
 #include "beds/population/population.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/keys/key_error.hpp"
-#include "dem/supply/supply.hpp"
 
 #include <fmt/format.h>
 

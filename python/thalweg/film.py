@@ -93,8 +93,9 @@ def write_images(pictures, folder):
     """Numbered from 0 on; those that a longer film has left in the folder go."""
     written = set()
     for number, picture in enumerate(pictures):
-        written.add(folder / f"image_{number:05d}.png")
-        plt.imsave(folder / f"image_{number:05d}.png", picture)
+        path = folder / f"image_{number:05d}.png"
+        plt.imsave(path, picture)
+        written.add(path)
     for path in set(folder.iterdir()) - written:
         if re.fullmatch(r"image_\d{5,}\.png", path.name):
             path.unlink()

@@ -1,6 +1,9 @@
 """Attempts at random cases: each in a folder of its own, and the first failures told with the case."""
+import subprocess
 import tempfile
 from pathlib import Path
+
+SECONDS = 120   # that a run may take
 
 
 def exit_code_of(attempt, count, what, seed, left_out=""):
@@ -22,3 +25,8 @@ def exit_code_of(attempt, count, what, seed, left_out=""):
         print(failure)
     print(f"{count} {what}, seed {seed}: {len(failures)} failures{f', {left} {left_out}' if left_out else ''}")
     return 1 if failures or left > count // 2 else 0
+
+
+def run_case(program, case, folder):
+    """The run of a case on one rank, into a folder."""
+    return subprocess.run([program, "run", case, "--out", folder], capture_output=True, text=True, timeout=SECONDS)

@@ -14,13 +14,12 @@ from pathlib import Path
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from attempts import exit_code_of
+from attempts import SECONDS, exit_code_of
 from random_cases import SIZE, SPACING, random_case
 from stl_box import write_box
 
 THALWEG, MPIEXEC, NUMBER = sys.argv[1], sys.argv[2], int(sys.argv[3])
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
-SECONDS = 120
 RANKS = [2, 3, 4, 6, 8]
 ABOUT_THE_RUN = ("run.log", "summary.json", "case", ".lock")   # how it went, on what and in how many parts
 

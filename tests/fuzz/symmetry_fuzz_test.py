@@ -8,7 +8,6 @@ end must be each other's but for rounding: the fluid is computed in double preci
 single precision.
 """
 import random
-import subprocess
 import sys
 from pathlib import Path
 
@@ -17,14 +16,13 @@ import numpy
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from attempts import exit_code_of
+from attempts import exit_code_of, run_case
 from random_cases import SIZE, is_periodic, random_case, velocity
 from stl_box import write_box
 from symmetry import Symmetry, case_in, signed_axes
 
 THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
-SECONDS = 120
 ROUNDING = 1e-6   # of the largest value; of positions, of the box
 FARTHEST_SHIFT = 20   # cells
 
@@ -151,7 +149,7 @@ def disagreement(chance, folder):
     for name, content in (("case", case), ("other", case_in(case, symmetry, periodic))):
         path = folder / f"{name}.yaml"
         path.write_text(yaml.safe_dump(content, sort_keys=False))
-        done = subprocess.run([THALWEG, "run", path, "--out", folder / name], capture_output=True, text=True, timeout=SECONDS)
+        done = run_case(THALWEG, path, folder / name)
         if done.returncode:
             refused = name == "case" and done.returncode == 2
             return None if refused else f"{symmetry}: {name} ends with {done.returncode}: {done.stderr}"

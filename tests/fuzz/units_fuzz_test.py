@@ -11,7 +11,6 @@ attributes of HDF5 files.
 import csv
 import random
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -21,14 +20,13 @@ import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-from attempts import exit_code_of
+from attempts import exit_code_of, run_case
 from random_cases import random_case
 from stl_box import write_box
 from thalweg.case_file import CaseLoader
 
 THALWEG, NUMBER = sys.argv[1], int(sys.argv[3])
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
-SECONDS = 120
 ROUNDING = 1e-12   # of the largest value of a column or field
 
 # Powers of length, time and mass. Others are pure numbers: diameters, cells, rad, v_0.
@@ -190,10 +188,6 @@ def differences(here, there, change):
 
 # ---- cases
 
-def run(case, folder):
-    return subprocess.run([THALWEG, "run", case, "--out", folder], capture_output=True, text=True, timeout=SECONDS)
-
-
 def with_scales(case):
     """Gives what has a default in SI units, and names faces as the written case does."""
     if "bed_surface" in case["analysis"]:
@@ -216,12 +210,12 @@ def disagreement(case, folder, chance):
     change = Units(powers)
     path, other = folder / "case.yaml", folder / "other.yaml"
     path.write_text(yaml.safe_dump(with_scales(case), sort_keys=False))
-    done = run(path, folder / "here")
+    done = run_case(THALWEG, path, folder / "here")
     if done.returncode:
         return None if done.returncode == 2 else f"ends with {done.returncode}: {done.stderr}"
     units = units_of((folder / "here" / "case.yaml").read_text())
     other.write_text(yaml.safe_dump(in_other_units(case, change, units), sort_keys=False))
-    done = run(other, folder / "there")
+    done = run_case(THALWEG, other, folder / "there")
     if done.returncode:
         return f"powers of two {powers}: ends with {done.returncode}: {done.stderr}"
     found = list(differences(folder / "here", folder / "there", change))
