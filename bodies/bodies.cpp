@@ -81,16 +81,18 @@ void Bodies<Real>::resize_to_slots() {
   const std::size_t slots = map_.bodies().size();
   bodies_.resize(slots);
   surrounding_.resize(slots);
-  if (options_.moments) moments_.resize(slots);
+  moments_.resize(slots);
 }
 
 template <typename Real>
-void Bodies<Real>::begin_step(bool recording) {
+void Bodies<Real>::begin_step(const StepMeasurements& measured) {
   totals_ = {};
-  by_height_ = recording ? MomentumByHeight(solids(), fluid_.indexing().size()[2]) : MomentumByHeight();
+  measured_ = measured;
+  by_height_ =
+      measured.momentum_by_height ? MomentumByHeight(solids(), fluid_.indexing().size()[2]) : MomentumByHeight();
   map_.begin_update();
   for (LinkBody& body : bodies_) body.clear_sums();
-  if (options_.moments) moments_.assign(bodies_.size(), {});
+  if (has_moments()) moments_.assign(bodies_.size(), {});
 }
 
 template <typename Real>
@@ -177,7 +179,7 @@ void Bodies<Real>::update_links() {
 template <typename Real>
 void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   CHECK(settled_ && linked_);
-  std::vector<FixedTensor>* moments = options_.moments ? &moments_ : nullptr;
+  std::vector<FixedTensor>* moments = has_moments() ? &moments_ : nullptr;
   InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
   const auto sweep = timer.measure(sweep_phase);
   fluid_.stream_and_collide([&](int tile) {
@@ -223,7 +225,7 @@ void Bodies<Real>::apply_links_on_copies(MomentumByHeight* by_height) const {
 
 template <typename Real>
 const MomentumByHeight& Bodies<Real>::momentum_by_height() {
-  CHECK(!by_height_.on_grains.empty());  // begin_step(true)
+  CHECK(measured_.momentum_by_height);
   apply_links_on_copies(&by_height_);
   return by_height_;
 }
@@ -262,9 +264,9 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
   const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
   body.force += FixedVec3::from(kept);
   const std::ptrdiff_t slot = &body - bodies_.data();
-  if (!by_height_.on_grains.empty()) by_height_.at(slot, 2 * plane + 1) += FixedVec3::from(kept);
+  if (measured_.momentum_by_height) by_height_.at(slot, 2 * plane + 1) += FixedVec3::from(kept);
   body.torque += FixedVec3::from(torque);
-  if (options_.moments) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
+  if (has_moments()) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
   totals_.kept += kept;
   totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }

@@ -32,6 +32,12 @@
 
 namespace thalweg::bodies {
 
+// What a step measures besides the sums of every body.
+struct StepMeasurements {
+  bool momentum_by_height = false;  // Bodies::momentum_by_height()
+  bool moments = false;             // Bodies::moments()
+};
+
 // This rank's part of the sums that a balance of the fluid needs, of one step.
 struct ExchangeTotals {
   Vec3 link_momentum = Vec3::Zero();  // force on the bodies through this rank's links
@@ -84,7 +90,8 @@ public:
   BodySlot slot_of(GlobalId id) const { return map_.slot_of(id); }         // none: not on this rank
   const LinkBody& body(BodySlot slot) const { return bodies_[index_of(slot)]; }
   const LinkSums& link_sums(BodySlot slot) const { return links_.sums_of(static_cast<int>(slot)); }
-  // sum F_a x_b of the step; where BodyOptions::moments asks for it.
+  // Whether the step measures moments(), and these: sum F_a x_b of a body.
+  bool has_moments() const { return measured_.moments; }
   const FixedTensor& moments(BodySlot slot) const { return moments_[index_of(slot)]; }
   // Patches of every body that solids occlude, by slot (OccludedPatches::by_solids()); moments() does not contain them.
   std::vector<std::array<std::int64_t, 3>> occluded_by_solids() const {
@@ -99,8 +106,7 @@ public:
   double reference_density() const { return options_.links.reference_density; }
   void set_reference_density(double density) { options_.links.reference_density = density; }
 
-  // recording: also sums by height what the fluid gives to bodies (momentum_by_height()).
-  void begin_step(bool recording = false);
+  void begin_step(const StepMeasurements& measured = {});
   BodySlot add(GlobalId id, double radius, GlobalId clump, const Vec3& centre);  // a new slot, with cells at `centre`
   void remove(BodySlot slot);                                                    // removes a sphere
   void move(BodySlot slot, const BodyMotion& motion);
@@ -119,8 +125,8 @@ public:
   // Fills the slots that links fill, as the sweep will do again, and changes no body. by_height: as for
   // InterpolatedBounceBack.
   void apply_links_on_copies(MomentumByHeight* by_height = nullptr) const;
-  // The momentum that links and covered cells give to bodies in the step that was begun with recording, by half planes
-  // of cells (InterpolatedBounceBack); before its sweep, whose slots it fills as well.
+  // The momentum that links and covered cells give to bodies in a step that measures it, by half planes of cells
+  // (InterpolatedBounceBack); before its sweep, whose slots it fills as well.
   const MomentumByHeight& momentum_by_height();
 
 private:
@@ -141,10 +147,11 @@ private:
   LinkBuilder link_builder_;
   OccludedLinks occluded_links_;
   Refill refill_;
-  std::vector<LinkBody> bodies_;         // by slot
-  std::vector<double> surrounding_;      // by slot
-  std::vector<FixedTensor> moments_;     // by slot; empty unless measured
-  MomentumByHeight by_height_;           // empty unless recording
+  std::vector<LinkBody> bodies_;     // by slot
+  std::vector<double> surrounding_;  // by slot
+  StepMeasurements measured_;
+  std::vector<FixedTensor> moments_;     // by slot, where measured
+  MomentumByHeight by_height_;           // empty unless measured
   bool settled_ = true, linked_ = true;  // cells and links are those of the present positions
   ExchangeTotals totals_;
 };

@@ -97,7 +97,7 @@ void TimeLoop::run() {
   Decision decision = Decision::go_on;
   while (system_.step() < final_step_ && decision == Decision::go_on) {
     const WallClock::time_point before = WallClock::now();
-    if (needs_momentum_at(system_.step() + 1)) system_.record_momentum();
+    announce_measurements();
     system_.advance();
     record_.advance_seconds += seconds_since(before);
     record_.last_step = system_.step();
@@ -164,6 +164,21 @@ bool TimeLoop::needs_momentum_at(std::int64_t step) const {
   for (std::size_t o = 0; o < observers_.size(); ++o)
     if (observers_[o]->needs_momentum() && schedules_[o].due(step)) return true;
   return false;
+}
+
+bool TimeLoop::needs_grain_stress_at(std::int64_t step) const {
+  for (std::size_t o = 0; o < observers_.size(); ++o)
+    if (observers_[o]->needs_grain_stress() && schedules_[o].due(step)) return true;
+  return std::any_of(plan_.outputs.begin(), plan_.outputs.end(), [step](const OutputTask& output) {
+    return output.needs_grain_stress && output.schedule.due(step);
+  });
+}
+
+// Tells the system what the next step is to measure; stresses are the mean of two steps.
+void TimeLoop::announce_measurements() {
+  const std::int64_t next = system_.step() + 1;
+  if (needs_momentum_at(next)) system_.record_momentum();
+  if (needs_grain_stress_at(next) || needs_grain_stress_at(next + 1)) system_.measure_grain_stress();
 }
 
 void TimeLoop::measure() {

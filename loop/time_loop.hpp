@@ -31,6 +31,7 @@ struct OutputTask {
   std::string phase;  // its line in the table of phases
   Schedule schedule;
   std::function<void(const Snapshot&)> act;  // collective
+  bool needs_grain_stress = false;           // as Observer::needs_grain_stress()
 };
 
 using SeriesRow = std::function<void(double time, std::int64_t step, const std::vector<Diagnostic>&)>;  // collective
@@ -122,6 +123,8 @@ private:
   void begin_largest();
   void count_among_largest();
   bool needs_momentum_at(std::int64_t step) const;
+  bool needs_grain_stress_at(std::int64_t step) const;
+  void announce_measurements();
   void measure();
   bool stop_criteria_hold();
   void write_what_is_due();

@@ -29,6 +29,9 @@ public:
   // True if it needs Snapshot::momentum, which a system records when asked before the step.
   virtual bool needs_momentum() const { return false; }
 
+  // True if it needs GrainView::fluid_stress, likewise.
+  virtual bool needs_grain_stress() const { return false; }
+
   // Takes one measurement. Collective: every rank calls it at the same steps.
   virtual void observe(const Snapshot& snapshot) = 0;
 

@@ -2,6 +2,7 @@
 #include "analysis/observers/stress_balance.hpp"
 
 #include "analysis/tools/sphere_in_layer.hpp"
+#include "core/base/check.hpp"
 #include "core/geometry/symmetric_pairs.hpp"
 #include "core/state/contact_stress.hpp"
 #include "core/state/whole_dataset.hpp"
@@ -27,6 +28,7 @@ public:
 
   explicit BalancedBodies(const Snapshot& snapshot)
       : grains_(snapshot.grains), contacts_(contact_moments(snapshot)), lubrication_(lubrication_moments(snapshot)) {
+    CHECK(grains_.fluid_stress.size() == grains_.id.size());  // needs_grain_stress()
     std::map<GlobalId, Vec3> centres;
     for (const ClumpState& state : grains_.clumps) {
       Body& clump = clumps_[state.id];
@@ -59,7 +61,7 @@ private:
     body.by_fluid = grains_.fluid_force[i];
     body.by_contacts = grains_.contact_force[i];
     body.contacts = contacts_[i];
-    if (!grains_.fluid_stress.empty()) body.of_fluid = volume * grains_.fluid_stress[i];
+    body.of_fluid = volume * grains_.fluid_stress[i];
     body.lubrication = lubrication_[i];
     return body;
   }

@@ -77,6 +77,7 @@ public:
                 const BalanceScales& scales, std::vector<HeldGrains> held);
 
   bool needs_momentum() const override { return true; }
+  bool needs_grain_stress() const override { return true; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
   // maximum, 0 where there is no bed (no grains, or less than a diameter between them and the top); bed_stress (Pa):

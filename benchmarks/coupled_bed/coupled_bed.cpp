@@ -140,7 +140,7 @@ std::unique_ptr<coupling::LatticeSystem<Real>> flowing_bed(const Box& box, const
   };
   dem::GrainParameters g = grain_parameters(box, decomposition);
   g.ghost_width = coupling::LatticeSystem<Real>::ghost_reach(0.5 * box.diameter, box.spacing);
-  g.attached_width = coupling::LatticeSystem<Real>::attached_width(p);
+  g.attached_width = coupling::LatticeSystem<Real>::attached_width;
   auto grains = std::make_unique<dem::GrainDynamics>(decomposition, MPI_COMM_WORLD, g, seeds);
   return std::make_unique<coupling::LatticeSystem<Real>>(std::make_unique<Decomposition>(decomposition), MPI_COMM_WORLD,
                                                          p, std::move(grains));

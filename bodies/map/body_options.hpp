@@ -27,7 +27,6 @@ struct LinkOptions {
 struct BodyOptions {
   LinkOptions links;
   bool keep_covered_momentum = false;  // a body gets the momentum, relative to its own, of cells that it covers
-  bool moments = false;                // sum F_a x_b of every body is measured: the stress of the fluid on it
 };
 
 }  // namespace thalweg::bodies

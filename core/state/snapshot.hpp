@@ -60,7 +60,9 @@ struct GrainView {
   std::span<const std::uint8_t> motion;
   int held(std::size_t grain) const { return motion.empty() ? 0 : motion[grain] & 3; }
   bool velocity_is_held(std::size_t grain) const { return (held(grain) & 1) != 0; }
-  std::span<const Mat3> fluid_stress;  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume
+  // Pa, of the fluid on the grain: sum F_a x_b over the surface, over the volume. Empty unless the last step measured
+  // it (System::measure_grain_stress()).
+  std::span<const Mat3> fluid_stress;
 };
 
 enum class FluidField { velocity, pressure, grain_id, density, shear_rate, eddy_viscosity, vorticity, q_criterion };

@@ -51,6 +51,10 @@ public:
   // The next step records its momentum budget for its snapshot. Collective; does not change the state. A system without
   // fluid and grains has none to record.
   virtual void record_momentum() {}
+  // The next step measures the stress of the fluid on every grain. Its snapshot has the mean of this exchange and the
+  // last one, which oscillate from step to step, if that step measured it too, and this one if not. Collective; does
+  // not change the state.
+  virtual void measure_grain_stress() {}
   virtual std::int64_t step() const = 0;                                     // steps done since the start of the run
   virtual double time_step() const = 0;                                      // s
   double time() const { return static_cast<double>(step()) * time_step(); }  // s

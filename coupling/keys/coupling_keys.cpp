@@ -31,14 +31,17 @@ static void refuse_former_keys(SectionVisitor& visit) {
                  "patches that grains hide from each other always count with the pressure around them; remove the key");
   visit.not_here("mass_balance",
                  "mass_by_links and the columns beside it in series.csv show where mass goes; remove the key");
+  visit.not_here(
+      "grain_stress",
+      "frames of the grains have fluid_stress and the stress balance measures what it needs; remove the key");
 }
 
 void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.choice("links", coupling.links, {.meaning = "interpolated bounce-back at grain surfaces"});
   refuse_former_keys(visit);
   if (!with_grains) {
-    for (const char* key : {"grain_steps_per_fluid_step", "fewest_cells_per_diameter", "momentum_exchange",
-                            "covered_momentum", "load", "grain_stress"})
+    for (const char* key :
+         {"grain_steps_per_fluid_step", "fewest_cells_per_diameter", "momentum_exchange", "covered_momentum", "load"})
       visit.not_here(key, "system: fluid has no grains; remove the key or set system: resolved");
     return;
   }
@@ -62,8 +65,6 @@ void describe(SectionVisitor& visit, CouplingKeys& coupling, bool with_grains) {
   visit.section("lubrication", coupling.lubrication,
                 {.meaning = "adds the force between near surfaces that the cells do not resolve, in every sub-step; "
                             "{}: with the defaults"});
-  visit.flag("grain_stress", coupling.grain_stress,
-             {.meaning = "measure the fluid's stress on every grain, for the VTK output: fluid_stress"});
 }
 
 }  // namespace thalweg::coupling

@@ -30,7 +30,6 @@ struct CouplingKeys {
   CoveredMomentum covered_momentum = CoveredMomentum::lost;
   LoadAveraging load = LoadAveraging::extrapolated;
   std::optional<LubricationKeys> lubrication;
-  bool grain_stress = false;  // measure the fluid's stress on every grain
   bool operator==(const CouplingKeys&) const = default;
 };
 

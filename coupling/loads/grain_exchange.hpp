@@ -20,7 +20,7 @@ public:
   using Vector = Eigen::Map<Of<Vec3>>;
   using Tensor = Eigen::Map<Of<RowMajor>>;
 
-  static constexpr int width = 24, width_with_stress = 42;  // columns
+  static constexpr int width = 34;  // columns
 
   explicit GrainExchange(std::span<Number> columns) : columns_(columns) { CHECK(columns.size() >= width); }
 
@@ -49,16 +49,13 @@ public:
     for (Number& value : columns_.subspan(16, 8)) value = 0.0;
   }
 
-  // Stress, only where asked for, Pa: of the last exchange, and the mean of the last two.
-  Tensor last_stress() const { return tensor(24); }
-  Tensor mean_stress() const { return tensor(33); }
+  // Stress of the last exchange, Pa, if that measured it.
+  bool has_last_stress() const { return columns_[24] != 0.0; }
+  void set_has_last_stress(bool has) const { columns_[24] = has ? 1.0 : 0.0; }
+  Tensor last_stress() const { return Tensor(columns_.data() + 25); }
 
 private:
   Vector vector(std::size_t first) const { return Vector(columns_.data() + first); }
-  Tensor tensor(std::size_t first) const {
-    CHECK(columns_.size() >= width_with_stress);
-    return Tensor(columns_.data() + first);
-  }
 
   std::span<Number> columns_;
 };

@@ -27,12 +27,13 @@ struct StressSums {
   std::array<std::int64_t, 3> occluded_by_solids{};  // in 36ths (bodies::OccludedPatches::by_solids())
 };
 
-// A row of integers for each grain of the store: its GrainSums and, with stress, its StressSums.
+// A row of integers for each grain of the store: its GrainSums and, in a step with stress, its StressSums.
 class GrainSumRows {
 public:
-  explicit GrainSumRows(bool with_stress) : width_(words<GrainSums> + (with_stress ? words<StressSums> : 0)) {}
-
-  void resize(std::size_t grains) { values_.resize(grains * static_cast<std::size_t>(width_)); }
+  void begin(std::size_t grains, bool with_stress) {
+    width_ = words<GrainSums> + (with_stress ? words<StressSums> : 0);
+    values_.resize(grains * static_cast<std::size_t>(width_));
+  }
   int width() const { return width_; }  // integers of a grain
   std::vector<std::int64_t>& values() { return values_; }
 
@@ -65,7 +66,7 @@ private:
     return sums;
   }
 
-  int width_;
+  int width_ = words<GrainSums>;
   std::vector<std::int64_t> values_;
 };
 

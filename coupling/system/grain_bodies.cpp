@@ -19,16 +19,14 @@ constexpr double link_tolerance = 1e-3;  // cells a grain may move before the ce
 
 template <typename Real>
 GrainBodies<Real>::GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies,
-                               const PeriodicBox& box, const Units& units, LoadAveraging load, bool with_stress)
+                               const PeriodicBox& box, const Units& units, LoadAveraging load)
     : communicator_(communicator),
       grains_(grains),
       bodies_(bodies),
       box_(box),
       units_(units),
       load_(load),
-      light_load_{units.density, units.spacing},
-      with_stress_(with_stress),
-      sums_(with_stress) {}
+      light_load_{units.density, units.spacing} {}
 
 template <typename Real>
 void GrainBodies<Real>::begin_where_grains_are() {
@@ -45,7 +43,7 @@ void GrainBodies<Real>::place_at_start() {
   bodies_.template check_count<InputError>(communicator_);
   update_motions();
   bodies_.settle_at_start();
-  show_stresses();
+  stresses_.clear();
 }
 
 template <typename Real>
@@ -73,9 +71,9 @@ template <typename Real>
 void GrainBodies<Real>::take_loads() {
   collect();
   apply();
+  apply_stresses();
   settle_masses();
   grains_.refresh_ghost_attached(GrainExchange<double>::first_shared, GrainExchange<double>::shared);
-  show_stresses();
 }
 
 // Bodies for the grains that are in reach of this rank, and no others.
@@ -127,13 +125,14 @@ template <typename Real>
 void GrainBodies<Real>::collect() {
   const std::size_t count = grains_.store().total();
   CHECK(slot_.size() == count);
-  sums_.resize(count);
+  const bool with_stress = bodies_.has_moments();
+  sums_.begin(count, with_stress);
   std::vector<std::array<std::int64_t, 3>> occluded;
-  if (with_stress_) occluded = bodies_.occluded_by_solids();
+  if (with_stress) occluded = bodies_.occluded_by_solids();
   for (std::size_t g = 0; g < count; ++g) {
     const bodies::LinkBody& body = bodies_.body(slot_[g]);
     sums_.set(g, GrainSums{body.force, body.torque, body.mass, body.pressure, bodies_.link_sums(slot_[g])});
-    if (with_stress_) sums_.set(g, StressSums{bodies_.moments(slot_[g]), occluded[index_of(slot_[g])]});
+    if (with_stress) sums_.set(g, StressSums{bodies_.moments(slot_[g]), occluded[index_of(slot_[g])]});
   }
   grains_.add_ghost_values(sums_.values(), sums_.width());
 }
@@ -150,7 +149,6 @@ void GrainBodies<Real>::apply() {
     kept.earlier_torque() = kept.last_torque();
     kept.last_force() = force;
     kept.last_torque() = torque;
-    if (with_stress_) apply_stress(g);
     kept.set_exchanges(std::min(kept.exchanges() + 1, 2));
   }
 }
@@ -217,22 +215,27 @@ Mat3 GrainBodies<Real>::moment_occluded_by_solids(std::size_t grain) const {
   return -2.0 * excess * radius / h.norm() * (h * h.transpose());
 }
 
-// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), the mean of two exchanges.
+// sigma_ab = (1/V) sum F_a x_b over the surface (Zhang et al. 2022, eq. 13), of this exchange.
 template <typename Real>
-void GrainBodies<Real>::apply_stress(std::size_t grain) {
+Mat3 GrainBodies<Real>::stress_of(std::size_t grain) const {
   const double volume = Sphere{grains_.store().radius[grain]}.volume();
-  const Mat3 stress =
-      (sums_.stress_of(grain).moments.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
-  const GrainExchange<double> kept = exchange_of(grain);
-  kept.mean_stress() = 0.5 * (stress + kept.last_stress());
-  kept.last_stress() = stress;
+  return (sums_.stress_of(grain).moments.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
 }
 
+// The mean of two exchanges where the one before has measured it as well.
 template <typename Real>
-void GrainBodies<Real>::show_stresses() {
-  if (!with_stress_) return;
-  stresses_.resize(grains_.store().owned);
-  for (std::size_t g = 0; g < stresses_.size(); ++g) stresses_[g] = exchange_of(g).mean_stress();
+void GrainBodies<Real>::apply_stresses() {
+  const bool measured = bodies_.has_moments();
+  stresses_.resize(measured ? grains_.store().owned : 0);
+  for (std::size_t g = 0; g < grains_.store().owned; ++g) {
+    const GrainExchange<double> kept = exchange_of(g);
+    if (measured) {
+      const Mat3 stress = stress_of(g);
+      stresses_[g] = kept.has_last_stress() ? Mat3(0.5 * (stress + kept.last_stress())) : stress;
+      kept.last_stress() = stress;
+    }
+    kept.set_has_last_stress(measured);
+  }
 }
 
 // Averages this exchange and those before it. For a light grain, the store holds the load of the step before; what is

@@ -21,13 +21,9 @@ namespace thalweg::coupling {
 template <typename Real>
 class GrainBodies {
 public:
-  // Both must outlive it; the grains carry attached_width() attached columns. with_stress: BodyOptions::moments.
+  // Both must outlive it; the grains carry GrainExchange::width attached columns.
   GrainBodies(MPI_Comm communicator, dem::GrainDynamics& grains, bodies::Bodies<Real>& bodies, const PeriodicBox& box,
-              const Units& units, LoadAveraging load, bool with_stress);
-
-  static int attached_width(bool with_stress) {
-    return with_stress ? GrainExchange<double>::width_with_stress : GrainExchange<double>::width;
-  }
+              const Units& units, LoadAveraging load);
 
   // Links of grains that have not been in this fluid before are cut where the grains are.
   void begin_where_grains_are();
@@ -43,11 +39,12 @@ public:
   // The motions of a step, and the cells of those that moved beyond the tolerance. slots_changed: whether grains have
   // come into reach of this rank or left it.
   void move_bodies(bool slots_changed);
-  // Loads on the grains from the sums of their bodies, and what these return of mass in the next step. Collective.
+  // Loads on the grains from the sums of their bodies, and what these return of mass in the next step; stresses in a
+  // step that measures the bodies' moments. Collective.
   void take_loads();
 
   double mass_owed() const;  // to the fluid, by all ranks: exact sums of multiples of 2^-44. Collective
-  std::span<const Mat3> stresses() const { return stresses_; }  // Pa, of owned grains; empty unless measured
+  std::span<const Mat3> stresses() const { return stresses_; }  // Pa, of owned grains, if the last step measured them
 
 private:
   GrainExchange<double> exchange_of(std::size_t grain) { return GrainExchange(grains_.store().attached_of(grain)); }
@@ -60,8 +57,8 @@ private:
   void collect();
   void apply();
   void set_load(std::size_t grain, const Vec3& force, const Vec3& torque);
-  void apply_stress(std::size_t grain);
-  void show_stresses();
+  void apply_stresses();
+  Mat3 stress_of(std::size_t grain) const;
   void settle_masses();
   void settle_mass(std::size_t first, std::size_t count);
   Mat3 moment_occluded_by_solids(std::size_t grain) const;
@@ -73,7 +70,6 @@ private:
   Units units_;
   LoadAveraging load_;
   LightLoad light_load_;
-  bool with_stress_;
   std::vector<bodies::BodySlot> slot_;  // of each grain of the store
   GrainSumRows sums_;                   // of each grain of the store
   std::vector<Mat3> stresses_;

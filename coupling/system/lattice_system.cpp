@@ -16,17 +16,15 @@ namespace thalweg::coupling {
 
 namespace {
 
-// Throws InputError if the saved grains have stresses of the fluid on them and these have none, or the other way round.
-// width: of the columns that these carry.
-void require_same_stresses(const ArchiveReader& archive, int width) {
+// Throws InputError if the saved grains carry another number of columns.
+void require_same_columns(const ArchiveReader& archive, int width) {
   const std::string name = "grains/system_columns";
   if (!archive.has(name) || archive.integer_attribute(name) == width) return;
-  const bool lacks = archive.integer_attribute(name) < width;
   throw InputError(fmt::format(
-      "The checkpoint's grains {} the fluid's stress on them and those of this case {}: "
-      "coupling.grain_stress or analysis.stress_balance has been {}; leave it as it was, or begin a new run "
-      "from that state with initial.from.",
-      lacks ? "lack" : "have", lacks ? "have it" : "lack it", lacks ? "added" : "taken away"));
+      "The grains of this checkpoint carry {} values of their exchange with the fluid, those of this program {}: it "
+      "was written by another version; finish the run with that one, or begin a new run from its state with "
+      "initial.from.",
+      archive.integer_attribute(name), width));
 }
 
 std::vector<bodies::Solid> with_motions(const std::vector<bodies::SolidShape>& shapes,
@@ -60,8 +58,7 @@ LatticeSystem<Real>::LatticeSystem(std::unique_ptr<Decomposition> decomposition,
   fluid_.carry_force();
   initialise(fluid_, parameters_, rest_);
   if (grains_) {
-    grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.load,
-                          parameters_.bodies.moments);
+    grain_bodies_.emplace(communicator, *grains_, bodies_, decomposition_->box(), parameters_.units, parameters_.load);
     grain_bodies_->begin_where_grains_are();
     grain_bodies_->place_at_start();
     open_mass_budget();
@@ -113,7 +110,7 @@ void LatticeSystem<Real>::advance() {
     move_bodies();
     set_gravity_of(step_ + 1);
     exchange_behind_links();
-    if (recording_) record_momentum_budget();
+    if (next_.momentum_by_height) record_momentum_budget();
     bodies_.sweep(timer_, phases_.sweep, phases_.links);
     solid_bodies_.settle_masses();
     if (grains_) take_loads();
@@ -124,6 +121,7 @@ void LatticeSystem<Real>::advance() {
     fluid_.advance();
   }
   ++step_;
+  next_ = {};
   keep_mass();
 }
 
@@ -169,7 +167,7 @@ void LatticeSystem<Real>::move_bodies() {
   }
   {
     const auto scope = timer_.measure(phases_.map);
-    bodies_.begin_step(recording_);
+    bodies_.begin_step(next_);
     solid_bodies_.move(time());
     if (grains_) grain_bodies_->move_bodies(slots_changed);
     bodies_.settle();
@@ -201,7 +199,6 @@ template <typename Real>
 void LatticeSystem<Real>::record_momentum_budget() {
   momentum_ = momentum_budget_of(fluid_, parameters_.units, bodies_.reference_density(), bodies_.momentum_by_height());
   momentum_->driving_of_grains = held_force_on_grains();
-  recording_ = false;
 }
 
 template <typename Real>
@@ -279,7 +276,7 @@ void LatticeSystem<Real>::save(ArchiveWriter& archive) const {
 template <typename Real>
 void LatticeSystem<Real>::load(ArchiveReader& archive) {
   require_same_time_step(archive, time_step());
-  if (grains_) require_same_stresses(archive, attached_width(parameters_));
+  if (grains_) require_same_columns(archive, attached_width);
   step_ = archive.integer_attribute("system/step");
   bodies_.remove_all();
   fluid_.load(archive);

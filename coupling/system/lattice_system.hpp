@@ -28,7 +28,7 @@ struct LatticeParameters : FluidParameters {
 template <typename Real>
 class LatticeSystem final : public System, private FluidSource, private ContactSource {
 public:
-  // solids: lattice units, at the start. grains: null for none; they hold their seeds, carry attached_width() attached
+  // solids: lattice units, at the start. grains: null for none; they hold their seeds, carry attached_width attached
   // columns and reach ghost_reach() beyond their block. Takes both over. Throws InputError where a solid covers no cell
   // or a rank has more cells or bodies than links can tell apart. Collective.
   LatticeSystem(std::unique_ptr<Decomposition> decomposition, MPI_Comm communicator,
@@ -36,15 +36,14 @@ public:
                 const std::vector<bodies::SolidShape>& solids = {});
 
   // Columns that dem carries for the exchange (grain_exchange.hpp).
-  static int attached_width(const LatticeParameters& parameters) {
-    return GrainBodies<Real>::attached_width(parameters.bodies.moments);
-  }
+  static constexpr int attached_width = GrainExchange<double>::width;
 
   // Distance (m) beyond a block within which the centres of grains must be known for the map.
   static double ghost_reach(double largest_radius, double spacing) { return largest_radius + 2.5 * spacing; }
 
   void advance() override;
-  void record_momentum() override { recording_ = grains_ != nullptr; }
+  void record_momentum() override { next_.momentum_by_height = grains_ != nullptr; }
+  void measure_grain_stress() override { next_.moments = grains_ != nullptr; }
   std::int64_t step() const override { return step_; }
   double time_step() const override { return parameters_.units.time_step; }
   Snapshot snapshot() const override;
@@ -111,7 +110,7 @@ private:
   SolidBodies<Real> solid_bodies_;
   std::unique_ptr<dem::GrainDynamics> grains_;     // null: none
   std::optional<GrainBodies<Real>> grain_bodies_;  // with grains
-  bool recording_ = false;                         // the next step's momentum is to be recorded
+  bodies::StepMeasurements next_;                  // of the next step
   std::optional<MomentumBudget> momentum_;         // of the last step
   MassBudget mass_;                                // with grains
   double start_excess_ = 0.0;                      // without: the excess mass at the start; lattice units

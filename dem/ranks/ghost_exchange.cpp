@@ -55,7 +55,8 @@ GhostExchange::GhostExchange(const Decomposition& decomposition, MPI_Comm commun
 void GhostExchange::build(GrainStore& store) {
   store.drop_ghosts();
   neighbours_.clear();
-  values_ready_ = attached_ready_ = false;
+  values_width_ = 0;
+  attached_ready_ = false;
   std::vector<GhostRow> rows;
   std::vector<double> columns;
   std::vector<int> row_to;
@@ -204,12 +205,12 @@ void GhostExchange::refresh_attached(GrainStore& store, std::size_t first, std::
 // The way back: every neighbour sends what it has for its ghosts to the rank it has them from.
 void GhostExchange::add_to_owners(std::vector<std::int64_t>& values, int width) {
   const std::size_t grain_bytes = sizeof(std::int64_t) * width;
-  if (!values_ready_) {
+  if (values_width_ != width) {
     std::vector<PackedExchange::Neighbour> list;
     for (const Neighbour& n : neighbours_)
       list.push_back({n.rank, values_tag, values_tag, n.ghosts.size() * grain_bytes, n.send.size() * grain_bytes});
     values_ = PackedExchange(communicator_, list);
-    values_ready_ = true;
+    values_width_ = width;
   }
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     auto* value = values_.send_buffer<std::int64_t>(n);

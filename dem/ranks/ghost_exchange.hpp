@@ -41,7 +41,8 @@ public:
   void refresh_attached(GrainStore& store, std::size_t first, std::size_t count);
 
   // Adds the entries that ranks have in `values` for their ghosts to the owners' entries: `width` integers per grain of
-  // the store, so that the sums depend on no order. Entries of ghosts stay as they are. width must always be the same.
+  // the store, so that the sums depend on no order. Entries of ghosts stay as they are. width is the same on every
+  // rank.
   void add_to_owners(std::vector<std::int64_t>& values, int width);
 
 private:
@@ -65,7 +66,7 @@ private:
   std::vector<Neighbour> followed_;    // the same without what refresh(PackedGrainState&) leaves out, where it does
   PackedExchange motion_, followed_motion_, attached_, values_;
   bool follows_ = false;         // true if follow() has been called for the present ghosts
-  bool values_ready_ = false;    // values_ fits the present ghosts
+  int values_width_ = 0;         // for which values_ fits the present ghosts; 0: none
   bool attached_ready_ = false;  // attached_ fits them
 };
 

@@ -29,10 +29,6 @@ InitialSource InitialCase::source_of(InitialField field) const {
   return {taken ? from.run.value_or("") : "", "initial.from"};
 }
 
-bool measures_grain_stress(const Case& c) {
-  return has_fluid(c) && (c.coupling.grain_stress || c.analysis.observers.of<analysis::StressBalanceKeys>());
-}
-
 continuum::SystemParameters column_of(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   continuum::SystemParameters parameters = system_parameters(c.continuum, gravity.x(), -gravity.z());

@@ -226,7 +226,6 @@ double bulk_viscosity(const Case& c);             // m^2/s: 2/9 (tau_b - 1/2), w
 
 std::int64_t grain_count(const Case& c);              // grains of all populations
 std::int64_t grain_rows(const Case& c);               // ids that they take: a clump as many as it has members
-bool measures_grain_stress(const Case& c);            // true if the stress of the fluid on every grain is measured
 double largest_diameter(const Case& c);               // m, of spheres and members of clumps; 0 without grains
 double largest_size(const beds::Population& grains);  // m, of spheres, and of clumps the nominal diameter
 double largest_size(const Case& c);                   // m, of all populations

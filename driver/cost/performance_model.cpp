@@ -18,12 +18,12 @@ namespace {
 // Populations sent for each cell of a face between blocks, and of an edge.
 constexpr double populations_of_face = 5.0, populations_of_edge = 1.0;
 // Bytes sent for a ghost: motion (position, velocity, spin) in each sub-step; once a step the sums of its links to the
-// owner (force, torque, mass, pressure, LinkSums; for stresses the moments and what solids hide), and the load back.
+// owner (force, torque, mass, pressure, LinkSums), and the load back.
 constexpr double motion_bytes = 9 * 8.0;
 // Fraction of the ghosts that may touch a grain of the rank and are therefore sent in sub-steps: in a wide bed 0.78 on
 // 2 ranks, 0.6 on 32, 0.5 on 256 (docs/scaling.md).
 constexpr double touching_ghosts = 0.6;
-constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0, moment_bytes = (9 + 3) * 8.0,
+constexpr double sums_bytes = (8 + bodies::LinkSums::size) * 8.0,
                  shared_bytes = coupling::GrainExchange<double>::shared * 8.0;
 // The run's decision to go on, and the largest speed of a grain; and about one a step where lists are made anew.
 constexpr double reductions = 2.0;
@@ -178,7 +178,7 @@ RankWork work_of(const Case& c, const GrainsOfCase& grains, const Decomposition&
   work.rounds += sub_steps + 1.0;
   if (!has_fluid(c)) return work;
   work.messages += 2.0 * beside;
-  work.bytes += work.ghosts * (sums_bytes + (measures_grain_stress(c) ? moment_bytes : 0.0) + shared_bytes);
+  work.bytes += work.ghosts * (sums_bytes + shared_bytes);
   work.rounds += 2.0;
   return work;
 }

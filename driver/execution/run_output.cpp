@@ -121,7 +121,8 @@ void RunOutput::add_to(loop::LoopPlan& plan) {
   plan.write_checkpoint = [this](const loop::LoopRecord& record) { return write_checkpoint(record); };
   for (auto& [every, series] : grains_)
     plan.outputs.push_back({"grain output", Schedule(every, time_step),
-                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});
+                            [&written = series](const Snapshot& snapshot) { written.write(snapshot); },
+                            series.needs_grain_stress()});
   for (auto& [every, series] : fluid_)
     plan.outputs.push_back({"fluid output", Schedule(every, time_step),
                             [&written = series](const Snapshot& snapshot) { written.write(snapshot); }});

@@ -116,7 +116,7 @@ io::GrainOutputFacts grain_output_facts(const Case& c) {
   facts.clumps = std::any_of(c.grains.begin(), c.grains.end(),
                              [](const beds::Population& grains) { return grains.clumps.count > 0; });
   facts.fluid_force = has_fluid(c) || c.system == SystemKind::model_fluid;
-  facts.fluid_stress = measures_grain_stress(c);
+  facts.fluid_stress = has_fluid(c);
   return facts;
 }
 

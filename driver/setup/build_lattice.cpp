@@ -17,7 +17,6 @@ coupling::LatticeParameters lattice_parameters(const Case& c) {
   for (const SolidCase& solid : c.solids) parameters.solid_motions.push_back(motion_of(solid));
   if (c.system != SystemKind::resolved) return parameters;
   parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
-  parameters.bodies.moments = measures_grain_stress(c);
   parameters.load = c.coupling.load;
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(grain_steps(c));
@@ -35,7 +34,7 @@ std::unique_ptr<System> build(const Case& c, MPI_Comm communicator, const Decomp
     grains.body_force = body_force(c);
     add_turnover(c, decomposition->box(), grains);
     grains.ghost_width = System::ghost_reach(0.5 * largest_diameter(c), c.domain.spacing);
-    grains.attached_width = System::attached_width(parameters);
+    grains.attached_width = System::attached_width;
     dem::GrainSeeds seeds;
     if (start == Start::as_placed) seeds = grain_seeds(c, communicator, *decomposition);
     dynamics = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, grains, std::move(seeds));

@@ -37,7 +37,7 @@ int components_of(GrainField field);
 struct GrainFieldFacts {
   bool clumps = false;
   bool fluid_force = false;   // the fluid, or what stands for it, acts on the grains
-  bool fluid_stress = false;  // its stress on them is measured
+  bool fluid_stress = false;  // it is resolved around them, and its stress on them can be measured
 };
 // True if grains with these properties have the field.
 bool there_is(GrainField field, const GrainFieldFacts& facts);

@@ -162,6 +162,10 @@ GrainSeries::GrainSeries(MPI_Comm communicator, const std::filesystem::path& fol
       facts_(facts),
       index_(communicator, folder / (name_ + ".pvd"), continue_from) {}
 
+bool GrainSeries::needs_grain_stress() const {
+  return fields_.empty() ? facts_.fluid_stress : contains(fields_, GrainField::fluid_stress);
+}
+
 // Fields in the order of the arrays.
 std::vector<NamedChoice<GrainField>> GrainSeries::fields_in(const Snapshot& snapshot) const {
   GrainFieldFacts facts;

@@ -18,7 +18,7 @@ namespace thalweg::io {
 // Writes NAME/NAME_<step>.vtp in a folder, and NAME.pvd: a point a grain that is selected, ordered by id, with its
 // radius (m) and the other fields as point arrays; stresses row by row (core/state/contact_stress.hpp). Where no fields
 // are given, there are all that the snapshots have: clump and orientation only with clumps, fluid_force and
-// fluid_stress only where they are measured. All ranks write one file together, and no rank gathers the grains. All
+// fluid_stress only where there is a fluid. All ranks write one file together, and no rank gathers the grains. All
 // calls are collective and throw RunError on every rank if a file cannot be written.
 class GrainSeries {
 public:
@@ -30,6 +30,7 @@ public:
               std::optional<double> continue_from = std::nullopt, const GrainFieldFacts& facts = {});
 
   void write(const Snapshot& snapshot);
+  bool needs_grain_stress() const;  // whether frames have fluid_stress, which a step measures when asked
 
   // Makes the frames so far outlast a loss of power, before a checkpoint that counts on them.
   void put_on_disk() { index_.put_on_disk(); }

@@ -112,8 +112,8 @@ static std::string refusal_of(GrainField field) {
   if (field == GrainField::fluid_force)
     return "there is no fluid around the grains; remove the word or set system: resolved";
   if (field == GrainField::fluid_stress)
-    return "the stress of the fluid on the grains is not measured; remove the word or, with system: resolved, set "
-           "coupling.grain_stress: true";
+    return "there is no flow around the grains whose stress could be measured; remove the word or set system: "
+           "resolved";
   return "no population has clumps, and the orientation of spheres is not followed; remove the word";
 }
 

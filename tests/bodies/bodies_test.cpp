@@ -59,7 +59,7 @@ TEST_F(BodyContracts, AnIdHasOneBody) {
 TEST_F(BodyContracts, MomentumByHeightIsAskedForBeforeTheStep) {
   bodies_.begin_step();
   EXPECT_THROW(bodies_.momentum_by_height(), ContractError);
-  bodies_.begin_step(true);
+  bodies_.begin_step({.momentum_by_height = true});
   EXPECT_EQ(bodies_.momentum_by_height().on_grains.size(), 25u);
 }
 

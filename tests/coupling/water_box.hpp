@@ -32,7 +32,6 @@ struct WaterBox {
   bool wall_forces = false;
   bool lubrication = false;  // with the cut-offs of the case's defaults, at the floor alone
   bool keep_covered_momentum = false;
-  bool grain_stress = false;
   bool full_gravity = false;  // gravity acts on everything, and buoyancy comes from the fluid
   LoadAveraging load = LoadAveraging::extrapolated;
   std::optional<lbm::FlowTarget> flow_target;
@@ -94,7 +93,6 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
   p.bodies.keep_covered_momentum = box.keep_covered_momentum;
-  p.bodies.moments = box.grain_stress;
   p.full_gravity = box.full_gravity;
   p.load = box.load;
   if (box.initial)
@@ -138,9 +136,15 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
     for (const dem::Plane& wall : g.walls) lubrication.walls.push_back(wall.normal.z() == 1.0);
     g.lubrication = lubrication;
   }
-  g.attached_width = LatticeSystem<Real>::attached_width(p);
+  g.attached_width = LatticeSystem<Real>::attached_width;
   auto grains = std::make_unique<dem::GrainDynamics>(*decomposition, communicator, g, box.seeds, box.clumps);
   return std::make_unique<LatticeSystem<Real>>(std::move(decomposition), communicator, p, std::move(grains), solids);
+}
+
+// Takes a step that measures the stress of the fluid on the grains.
+inline void advance_with_stress(System& system) {
+  system.measure_grain_stress();
+  system.advance();
 }
 
 inline dem::GrainSeed glass_sphere(GlobalId id, const Vec3& position, const Vec3& velocity = Vec3::Zero(),

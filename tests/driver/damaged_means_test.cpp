@@ -49,6 +49,7 @@ struct Watched {
   void run(int steps) {
     for (int n = 0; n < steps; ++n) {
       system->record_momentum();
+      system->measure_grain_stress();
       system->advance();
       for (auto& observer : observers) observer->observe(system->snapshot());
     }

@@ -224,7 +224,6 @@ def coupling(chance, case):
     maybe(chance, content, "covered_momentum", lambda: "to_grain", 0.3)
     maybe(chance, content, "load", lambda: "mean", 0.3)
     maybe(chance, content, "lubrication", lambda: {}, 0.4)
-    maybe(chance, content, "grain_stress", lambda: True, 0.3)
     return content
 
 

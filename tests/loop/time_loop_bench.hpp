@@ -22,6 +22,7 @@ class Counter : public System {
 public:
   std::function<double(std::int64_t)> lattice_velocity = [](std::int64_t) { return 0.05; };
   std::function<void(std::int64_t)> on_advance = [](std::int64_t) {};
+  Steps with_momentum, with_stress;  // that were asked to measure these
 
   explicit Counter(std::int64_t start = 0) : step_(start) {}
   void advance() override {
@@ -29,6 +30,8 @@ public:
     ++step_;
     on_advance(step_);
   }
+  void record_momentum() override { with_momentum.push_back(step_ + 1); }
+  void measure_grain_stress() override { with_stress.push_back(step_ + 1); }
   std::int64_t step() const override { return step_; }
   double time_step() const override { return 0.001; }
   Snapshot snapshot() const override {

@@ -46,6 +46,23 @@ TEST(TimeLoop, KeepsEveryBeatAndEndsWithACheckpoint) {
   EXPECT_EQ(bench.checkpoints, (Steps{4, 8, 10}));
 }
 
+class NeedsMore : public LooksOn {
+public:
+  using LooksOn::LooksOn;
+  bool needs_momentum() const override { return true; }
+  bool needs_grain_stress() const override { return true; }
+};
+
+// The stress of a frame or measurement is the mean of two steps.
+TEST(TimeLoop, AsksForMomentumAndStressesInTheStepsThatShowThem) {
+  Bench bench(0.020);
+  bench.plan.outputs.push_back({"grains", Schedule(0.008, 0.001), [](const Snapshot&) {}, true});
+  bench.observers.push_back(std::make_unique<NeedsMore>(0.009));
+  bench.run();
+  EXPECT_EQ(bench.system.with_momentum, (Steps{9, 18}));
+  EXPECT_EQ(bench.system.with_stress, (Steps{7, 8, 9, 15, 16, 17, 18}));
+}
+
 // 1.4 and 2.5 steps: the first steps at or after their multiples, from wherever the run goes on.
 TEST(TimeLoop, KeepsIntervalsThatAreNoWholeStepsAfterARestart) {
   const auto set = [](Bench& bench) {

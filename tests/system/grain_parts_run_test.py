@@ -178,7 +178,7 @@ output:
             ("{name: a, every: 1, fields: [fluid_force]}", [f"{part}.fields.0 = \"fluid_force\"", "no fluid"]),
             (
                 "{name: a, every: 1, fields: [id, fluid_stress]}",
-                [f"{part}.fields.1 = \"fluid_stress\"", "grain_stress: true"],
+                [f"{part}.fields.1 = \"fluid_stress\"", "system: resolved"],
             ),
         ):
             self.assert_refused("check", self.case, "--set", f"output.grain_parts=[{given}]", words=words)

@@ -77,7 +77,7 @@ std::unique_ptr<coupling::LatticeSystem<double>> make(const Regime& regime, cons
   g.time_step = 1.0;
   g.skin = 1.0;
   g.ghost_width = coupling::LatticeSystem<double>::ghost_reach(radius, 1.0);
-  g.attached_width = coupling::LatticeSystem<double>::attached_width(p);
+  g.attached_width = coupling::LatticeSystem<double>::attached_width;
   auto grains =
       std::make_unique<dem::GrainDynamics>(*decomposition, MPI_COMM_SELF, g, std::vector<dem::GrainSeed>{seed});
   return std::make_unique<coupling::LatticeSystem<double>>(std::move(decomposition), MPI_COMM_SELF, p,

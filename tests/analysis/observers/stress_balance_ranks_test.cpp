@@ -14,7 +14,6 @@ void looks_without_touching(bool side_walls) {
   box.cells = {32, 24, 24};
   box.periodic = {true, !side_walls, false};
   box.gravity = Vec3(0.5, 0.0, -9.8);
-  box.grain_stress = true;
   for (int k = 0; k < 6; ++k)
     box.seeds.push_back(glass_sphere(k, Vec3(6.4e-3 * (k % 3) + 1e-3, 8e-3 * (k / 3) + 2.51e-3, 6e-3 + 1e-3 * k),
                                      Vec3(0.2, side_walls ? -0.1 : 0.05 * k, -0.1)));
@@ -25,7 +24,9 @@ void looks_without_touching(bool side_walls) {
   StressBalance again = balance_of(box, *watched, 1.25e-3, {});
   for (int step = 0; step < 20; ++step) {
     watched->record_momentum();
+    watched->measure_grain_stress();
     serial->record_momentum();
+    serial->measure_grain_stress();
     watched->advance();
     alone->advance();
     serial->advance();

@@ -28,7 +28,6 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
   box.smagorinsky_constant = 0.0;
   box.collision = lbm::CollisionModel::trt;
   box.links.rule = bodies::LinkRule::cli;
-  box.grain_stress = true;
   return box;
 }
 
@@ -37,6 +36,7 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
 void measure(StressBalance& balance, LatticeSystem<double>& system) {
   for (int n = 0; n < 20; ++n) {
     system.record_momentum();
+    system.measure_grain_stress();
     system.advance();
     balance.observe(system.snapshot());
   }
@@ -223,6 +223,7 @@ TEST(StressBalance, OfABedAtRestHasTheWeightOfItsGrains) {
   constexpr int steps = 20;
   for (int n = 0; n < steps; ++n) {
     system->record_momentum();
+    system->measure_grain_stress();
     system->advance();
     const Snapshot snapshot = system->snapshot();
     balance.observe(snapshot);

@@ -14,9 +14,9 @@ GrainSums sums_from(std::int64_t first) {
 
 // Rows are added number by number, as those of ghosts to those of owners are.
 TEST(GrainSums, AddUpAsPlainIntegers) {
-  GrainSumRows owner(true), ghost(true);
-  owner.resize(3);
-  ghost.resize(3);
+  GrainSumRows owner, ghost;
+  owner.begin(3, true);
+  ghost.begin(3, true);
   for (std::size_t g = 0; g < 3; ++g) {
     owner.set(g, sums_from(100 * static_cast<std::int64_t>(g)));
     ghost.set(g, sums_from(1));
@@ -40,8 +40,9 @@ TEST(GrainSums, AddUpAsPlainIntegers) {
 }
 
 TEST(GrainSums, HaveNoStressUnlessItIsMeasured) {
-  GrainSumRows plain(false);
-  plain.resize(2);
+  GrainSumRows plain;
+  plain.begin(2, true);
+  plain.begin(2, false);
   EXPECT_EQ(plain.width(), 18);
   EXPECT_NO_THROW(plain.of(1));
   EXPECT_THROW(plain.of(2), ContractError);

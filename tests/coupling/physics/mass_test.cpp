@@ -193,7 +193,6 @@ TEST(WaterMass, AddingDensityGivesNoMomentum) {
 // The mass owed, the sums of the account and the density that presses on nothing travel with the state.
 TEST(WaterMass, IsTheSameAfterARestart) {
   WaterBox box = crowd(Sides::closed, true);
-  box.grain_stress = true;
   const auto whole = make<float>(box), first = make<float>(box), second = make<float>(box);
   for (int step = 0; step < 70; ++step) {
     whole->advance();

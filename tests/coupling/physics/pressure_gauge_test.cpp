@@ -26,7 +26,6 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
   box.periodic = {true, false, false};
   box.closed = true;
   box.initial = initial;
-  box.grain_stress = true;
   box.wall_forces = true;
   const double d = 5e-3;
   for (const Vec3& place :
@@ -39,7 +38,7 @@ Loads loads_in(WaterBox box, FluidInitialState (*initial)(const Vec3&)) {
   }
   const auto system =
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
-  for (int step = 0; step < 4; ++step) system->advance();
+  for (int step = 0; step < 4; ++step) advance_with_stress(*system);
   Loads loads;
   const Snapshot s = system->snapshot();
   for (std::size_t g = 0; g < s.grains.position.size(); ++g) {

@@ -213,15 +213,13 @@ void collect_keys(const YAML::Node& node, const std::string& path, std::vector<s
 }
 
 TEST(CaseReader, ReadsEveryWallAndCollision) {
-  const Case c =
-      read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
-                   "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4}, "
-                   "bottom: law_of_the_wall, top: {type: moving, velocity: [0.1, 0, 0]}}",
-                   "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25", "coupling.links=cli",
-                   "coupling.covered_momentum=to_grain", "coupling.grain_stress=true"});
+  const Case c = read(flume, {"domain.boundaries={x_low: {type: velocity_inlet, velocity: [0.2, 0, 0]}, x_high: {type: "
+                              "pressure_outlet, pressure: 3}, y: {type: navier_slip, slip_length: 1e-4}, "
+                              "bottom: law_of_the_wall, top: {type: moving, velocity: [0.1, 0, 0]}}",
+                              "grains.0.fixed=true", "fluid.collision=trt", "fluid.magic_parameter=0.25",
+                              "coupling.links=cli", "coupling.covered_momentum=to_grain"});
   EXPECT_EQ(c.coupling.links, bodies::LinkRule::cli);
   EXPECT_EQ(c.coupling.covered_momentum, coupling::CoveredMomentum::to_grain);
-  EXPECT_TRUE(c.coupling.grain_stress);
   EXPECT_EQ(c.domain.faces[x_low].velocity, Vec3(0.2, 0, 0));
   EXPECT_EQ(c.domain.faces[x_high].pressure, 3.0);
   EXPECT_EQ(c.domain.faces[y_high].slip_length, 1e-4);

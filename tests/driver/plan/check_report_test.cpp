@@ -70,7 +70,7 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   c.analysis.observers.of<analysis::TracksKeys>().emplace().one_in = 3;
   const DiskSpace space = disk_space(c);
   EXPECT_NEAR(space.fluid, 301.0 * 240.0 * 212.0 * 5.0 * 4.0, 1.0);
-  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 32.0 * 8.0, 1.0);
+  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 41.0 * 8.0, 1.0);
   EXPECT_NEAR(space.records, 30001.0 * 334.0 * 144.0, 1.0);
   Case reach = c;
   reach.analysis.observers.of<analysis::ReachKeys>() = {.record_every = 0.5, .sections = 24};
@@ -78,7 +78,7 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
   EXPECT_GT(space.checkpoints, 3.0 * state);
   EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));
-  EXPECT_NE(disk_line(space, 1e12).find(": fluid 306 MB, grains 15.6 MB, checkpoints"), std::string::npos)
+  EXPECT_NE(disk_line(space, 1e12).find(": fluid 306 MB, grains 20 MB, checkpoints"), std::string::npos)
       << disk_line(space, 1e12);
   EXPECT_NE(disk_line(space, 79e6).find("more than the 79 MB that are free in this folder"), std::string::npos);
   Case every_step = c;
