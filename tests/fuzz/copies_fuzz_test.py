@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Random valid cases in twice the box, with everything in it twice, have twice as much of what counts and the same of all
-else.
+"""Random valid cases beside their copies have twice the sums, and the same fluxes, stresses, means and extremes.
 
 Called by ctest: copies_fuzz_test.py THALWEG MPIEXEC NUMBER_OF_CASES [SEED]. Each case (random_cases.py) runs twice, the
-second time side by side with its copy along a periodic axis. Sums over the box, by their units and names, must be twice
-those of the case; fluxes, stresses, means, profiles and extremes the same, but for rounding: the fluid is computed in
-double precision, but where links are cut is kept in single precision.
+second time in a box twice as long along a periodic axis, with everything in it twice. Which columns are sums over the
+box follows from units and names. The fluid is computed in double precision, but where links are cut is kept in single
+precision.
 """
 import copy
 import csv
@@ -109,7 +108,9 @@ def in_series(one, both):
         name, _, unit = head.rstrip("]").partition(" [")
         if head not in both[0]:
             yield f"{head}: not in both"
-        elif differs(name, unit, *([float(row[rows[0].index(head)] or "nan") for row in rows[1:]] for rows in (one, both))):
+            continue
+        values = ([float(row[rows[0].index(head)] or "nan") for row in rows[1:]] for rows in (one, both))
+        if differs(name, unit, *values):
             yield head
 
 
@@ -120,9 +121,12 @@ def in_profiles(one, both):
         names = []
         first.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
         for name in names:
-            numbers = first[name].dtype.kind in "fiu"
+            if name not in second:
+                yield f"{name}: not in both"
+                continue
             unit = str(first[name].attrs.get("units", ""))
-            if name not in second or numbers and differs(name.split("/")[-1], unit, first[name][...], second[name][...]):
+            values = first[name][...], second[name][...]
+            if first[name].dtype.kind in "fiu" and differs(name.split("/")[-1], unit, *values):
                 yield name
 
 

@@ -1,8 +1,4 @@
-"""Random cases whose grains have given places, clear of each other and of solids and plates.
-
-place_grains(chance, case, periodic): gives populations placed at random positions, and of disks in the middle of the box,
-and those of one size. periodic: of the axes. What finds no room is left out.
-"""
+"""Random cases (random_cases.py) whose grains have places in the case, which can be moved with everything else."""
 import numpy
 
 from random_cases import SIZE, velocity
@@ -20,7 +16,7 @@ def reaches_of(case):
 
 
 def free_places(chance, count, radius, taken, periodic):
-    """Up to `count` centres of spheres of this radius that clear each other and those taken, to which they are added."""
+    """Up to `count` centres of spheres of a radius that clear each other and those taken, to which they are added."""
     places = []
     for _ in range(200 * count):
         here = [chance.uniform(0 if p else radius, side if p else side - radius) for p, side in zip(periodic, SIZE)]
@@ -38,6 +34,9 @@ def free_places(chance, count, radius, taken, periodic):
 
 
 def place_grains(chance, case, periodic):
+    """Gives every population one size and random places, clear of each other and of solids and plates; what finds no room
+    is left out. periodic: of the axes.
+    """
     taken, placed = list(reaches_of(case)), []
     for grains in case["grains"]:
         diameter = radius = 5.2e-3   # of a clump, which reaches no farther than its diameter from its centre
