@@ -222,7 +222,8 @@ Mat3 GrainBodies<Real>::stress_of(std::size_t grain) const {
   return (sums_.stress_of(grain).moments.to_mat3() + moment_occluded_by_solids(grain)) * (units_.torque() / volume);
 }
 
-// The mean of two exchanges where the one before has measured it as well.
+// The mean of two exchanges where the one before has measured it as well. What is not measured is zero in a checkpoint,
+// whatever was measured before.
 template <typename Real>
 void GrainBodies<Real>::apply_stresses() {
   const bool measured = bodies_.has_moments();
@@ -233,6 +234,8 @@ void GrainBodies<Real>::apply_stresses() {
       const Mat3 stress = stress_of(g);
       stresses_[g] = kept.has_last_stress() ? Mat3(0.5 * (stress + kept.last_stress())) : stress;
       kept.last_stress() = stress;
+    } else if (kept.has_last_stress()) {
+      kept.last_stress().setZero();
     }
     kept.set_has_last_stress(measured);
   }

@@ -32,8 +32,10 @@ WaterBox viscous_box(const Index3& cells, double cells_per_diameter, double tau)
 }
 
 // Over some steps one after the other: exchanges over links swing a little from step to step, which the mean of two
-// takes out of the loads (docs/theory.md, section 3).
+// takes out of the loads (docs/theory.md, section 3). Stresses are such a mean from the second step on that measures
+// them.
 void measure(StressBalance& balance, LatticeSystem<double>& system) {
+  advance_with_stress(system);
   for (int n = 0; n < 20; ++n) {
     system.record_momentum();
     system.measure_grain_stress();
