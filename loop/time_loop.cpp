@@ -160,25 +160,19 @@ void TimeLoop::count_among_largest() {
   }
 }
 
-bool TimeLoop::needs_momentum_at(std::int64_t step) const {
-  for (std::size_t o = 0; o < observers_.size(); ++o)
-    if (observers_[o]->needs_momentum() && schedules_[o].due(step)) return true;
-  return false;
-}
-
-bool TimeLoop::needs_grain_stress_at(std::int64_t step) const {
-  for (std::size_t o = 0; o < observers_.size(); ++o)
-    if (observers_[o]->needs_grain_stress() && schedules_[o].due(step)) return true;
-  return std::any_of(plan_.outputs.begin(), plan_.outputs.end(), [step](const OutputTask& output) {
-    return output.needs_grain_stress && output.schedule.due(step);
-  });
-}
-
 // Tells the system what the next step is to measure; stresses are the mean of two steps.
 void TimeLoop::announce_measurements() {
   const std::int64_t next = system_.step() + 1;
-  if (needs_momentum_at(next)) system_.record_momentum();
-  if (needs_grain_stress_at(next) || needs_grain_stress_at(next + 1)) system_.measure_grain_stress();
+  const auto due_soon = [next](const Schedule& schedule) { return schedule.due(next) || schedule.due(next + 1); };
+  bool momentum = false, stress = false;
+  for (std::size_t o = 0; o < observers_.size(); ++o) {
+    momentum = momentum || (observers_[o]->needs_momentum() && schedules_[o].due(next));
+    stress = stress || (observers_[o]->needs_grain_stress() && due_soon(schedules_[o]));
+  }
+  for (const OutputTask& output : plan_.outputs)
+    stress = stress || (output.needs_grain_stress && due_soon(output.schedule));
+  if (momentum) system_.record_momentum();
+  if (stress) system_.measure_grain_stress();
 }
 
 void TimeLoop::measure() {

@@ -122,8 +122,6 @@ private:
   void check_health(bool is_regular = false);
   void begin_largest();
   void count_among_largest();
-  bool needs_momentum_at(std::int64_t step) const;
-  bool needs_grain_stress_at(std::int64_t step) const;
   void announce_measurements();
   void measure();
   bool stop_criteria_hold();

@@ -3,6 +3,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import yaml
+
 SECONDS = 120   # that a run may take
 
 
@@ -25,6 +27,20 @@ def exit_code_of(attempt, count, what, seed, left_out=""):
         print(failure)
     print(f"{count} {what}, seed {seed}: {len(failures)} failures{f', {left} {left_out}' if left_out else ''}")
     return 1 if failures or left > count // 2 else 0
+
+
+def failure_of(program, folder, cases):
+    """Why not all of these cases end well, each run into a folder of its name: empty if they do, None if the first is
+    refused. cases: contents by name; the others are valid if the first is.
+    """
+    for name, content in cases.items():
+        path = folder / f"{name}.yaml"
+        path.write_text(yaml.safe_dump(content, sort_keys=False))
+        done = run_case(program, path, folder / name)
+        if done.returncode:
+            refused = content is next(iter(cases.values())) and done.returncode == 2
+            return None if refused else f"{name} ends with {done.returncode}: {done.stderr}"
+    return ""
 
 
 def run_case(program, case, folder):

@@ -15,10 +15,9 @@ from pathlib import Path
 
 import h5py
 import numpy
-import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from attempts import exit_code_of, run_case
+from attempts import exit_code_of, failure_of
 from placed_cases import place_grains
 from random_cases import SIZE, is_periodic, random_case
 from stl_box import write_box
@@ -134,13 +133,9 @@ def disagreement(chance, folder):
     """What is wrong with the copy; empty if nothing is, None if the case is refused."""
     write_box(folder / "box.stl", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
     case, axis = case_to_copy(chance)
-    for name, content in (("case", case), ("both", copied(case, axis))):
-        path = folder / f"{name}.yaml"
-        path.write_text(yaml.safe_dump(content, sort_keys=False))
-        done = run_case(THALWEG, path, folder / name)
-        if done.returncode:
-            refused = name == "case" and done.returncode == 2
-            return None if refused else f"along {'xy'[axis]}: {name} ends with {done.returncode}: {done.stderr}"
+    failure = failure_of(THALWEG, folder, {"case": case, "both": copied(case, axis)})
+    if failure != "":
+        return failure and f"along {'xy'[axis]}: {failure}"
     found = [*in_series(folder / "case", folder / "both"), *in_profiles(folder / "case", folder / "both")]
     return f"along {'xy'[axis]}: {', '.join(found)}" if found else ""
 

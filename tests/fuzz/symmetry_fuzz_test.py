@@ -13,10 +13,9 @@ from pathlib import Path
 
 import h5py
 import numpy
-import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from attempts import exit_code_of, run_case
+from attempts import exit_code_of, failure_of
 from placed_cases import place_grains
 from random_cases import SIZE, is_periodic, random_case
 from stl_box import write_box
@@ -103,13 +102,9 @@ def disagreement(chance, folder):
     write_box(folder / "box.stl", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
     case, periodic = symmetric_case(chance)
     symmetry = symmetry_of(chance, case, periodic)
-    for name, content in (("case", case), ("other", case_in(case, symmetry, periodic))):
-        path = folder / f"{name}.yaml"
-        path.write_text(yaml.safe_dump(content, sort_keys=False))
-        done = run_case(THALWEG, path, folder / name)
-        if done.returncode:
-            refused = name == "case" and done.returncode == 2
-            return None if refused else f"{symmetry}: {name} ends with {done.returncode}: {done.stderr}"
+    failure = failure_of(THALWEG, folder, {"case": case, "other": case_in(case, symmetry, periodic)})
+    if failure != "":
+        return failure and f"{symmetry}: {failure}"
     found = list(differences(folder / "case", folder / "other", symmetry, periodic))
     return f"{symmetry}: {', '.join(found)}" if found else ""
 
