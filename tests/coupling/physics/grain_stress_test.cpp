@@ -2,14 +2,17 @@
 // the stresslet of a sphere.
 #include "tests/coupling/water_box.hpp"
 
+#include "core/base/error.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "tests/support/memory_archive.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace thalweg::coupling::grain_stress_test {
@@ -111,6 +114,21 @@ TEST(GrainStress, IsTheSameAfterARestart) {
       advance_with_stress(*system);
     EXPECT_EQ(stresses_of(*whole), stresses_of(*second));
   }
+}
+
+// An earlier version kept 24 values of a grain, or 42 with its stress.
+TEST(GrainStress, ACheckpointWithOtherColumnsIsRefused) {
+  const auto system = two_falling_grains();
+  auto saved = test::saved(*system, MPI_COMM_WORLD);
+  saved.attributes.at("grains/system_columns") = std::int64_t{42};
+  std::string said;
+  try {
+    test::load(*system, saved);
+  } catch (const InputError& error) {
+    said = error.what();
+  }
+  EXPECT_NE(said.find("carry 42 values"), std::string::npos) << said;
+  EXPECT_NE(said.find("initial.from"), std::string::npos) << said;
 }
 
 // A sphere held in the middle between two plates that slide against each other, in slow flow. Batchelor (1970), J.
