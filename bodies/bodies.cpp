@@ -180,7 +180,7 @@ template <typename Real>
 void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   CHECK(settled_ && linked_);
   std::vector<FixedTensor>* moments = has_moments() ? &moments_ : nullptr;
-  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, bodies_, moments);
+  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, bodies_, moments, solids());
   const auto sweep = timer.measure(sweep_phase);
   fluid_.stream_and_collide([&](int tile) {
     const auto scope = timer.measure(links_phase);
@@ -188,7 +188,7 @@ void Bodies<Real>::sweep(PhaseTimer& timer, int sweep_phase, int links_phase) {
   });
   const auto scope = timer.measure(links_phase);
   add_link_totals();
-  occluded_links_.apply(bodies_, moments);
+  occluded_links_.apply(solids(), bodies_, moments);
   map_.occluded_patches().apply(map_.bodies(), map_.solids(), surrounding_, reference_density(), bodies_, moments);
 }
 
@@ -219,7 +219,7 @@ template <typename Real>
 void Bodies<Real>::apply_links_on_copies(MomentumByHeight* by_height) const {
   CHECK(settled_ && linked_);
   std::vector<LinkBody> copies = bodies_;  // take up the momentum, which belongs to the next step
-  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, by_height);
+  InterpolatedBounceBack<Real> links(fluid_, links_, box_, options_.links, copies, nullptr, 0, by_height);
   for (int tile = 0; tile < fluid_.tiles().count(); ++tile) links.apply_tile(tile);
 }
 
@@ -266,7 +266,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
   const std::ptrdiff_t slot = &body - bodies_.data();
   if (measured_.momentum_by_height) by_height_.at(slot, 2 * plane + 1) += FixedVec3::from(kept);
   body.torque += FixedVec3::from(torque);
-  if (has_moments()) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
+  if (has_moments() && slot >= solids()) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
   totals_.kept += kept;
   totals_.kept_angular_momentum += body.centre.cross(kept) + torque;
 }

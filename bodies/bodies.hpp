@@ -90,7 +90,7 @@ public:
   BodySlot slot_of(GlobalId id) const { return map_.slot_of(id); }         // none: not on this rank
   const LinkBody& body(BodySlot slot) const { return bodies_[index_of(slot)]; }
   const LinkSums& link_sums(BodySlot slot) const { return links_.sums_of(static_cast<int>(slot)); }
-  // Whether the step measures moments(), and these: sum F_a x_b of a body.
+  // Whether the step measures moments(), and these: sum F_a x_b of a body, 0 of a solid.
   bool has_moments() const { return measured_.moments; }
   const FixedTensor& moments(BodySlot slot) const { return moments_[index_of(slot)]; }
   // Patches of every body that solids occlude, by slot (OccludedPatches::by_solids()); moments() does not contain them.

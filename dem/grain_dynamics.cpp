@@ -6,28 +6,39 @@
 namespace thalweg::dem {
 
 void GrainDynamics::compute_body_forces() {
-  const auto force = [this](double mass, double radius) -> Vec3 {
-    const Vec3 on_volume = grain_volume(radius, parameters_.disk_thickness) * force_density_;
+  kept_body_force_.clear();
+  if (kept_strength_ != strength_) compute_body_forces(kept_strength_, kept_body_force_);
+  compute_body_forces(strength_, body_force_);
+}
+
+void GrainDynamics::compute_body_forces(const BodyForceStrength& strength, std::vector<Vec3>& forces) {
+  const auto force = [&](double mass, double radius) -> Vec3 {
+    const Vec3 on_volume = grain_volume(radius, parameters_.disk_thickness) * strength.density;
     if (!parameters_.body_force) return on_volume;
-    return body_force_factor_ * parameters_.body_force(mass, radius) + on_volume;
+    return strength.factor * parameters_.body_force(mass, radius) + on_volume;
   };
-  body_force_.assign(store_.owned, Vec3::Zero());
+  forces.assign(store_.owned, Vec3::Zero());
   for (std::size_t s = 0; s < store_.owned; ++s)
-    if (store_.clump[s] < 0) body_force_[s] = force(store_.mass[s], store_.radius[s]);
+    if (store_.clump[s] < 0) forces[s] = force(store_.mass[s], store_.radius[s]);
   clumps_.compute_body_forces(force);
-  clumps_.share_body_force(body_force_);
+  clumps_.share_body_force(forces);
 }
 
 void GrainDynamics::set_body_force_factor(double factor) {
-  if (factor == body_force_factor_) return;
-  body_force_factor_ = factor;
+  if (factor == strength_.factor) return;
+  strength_.factor = factor;
   compute_body_forces();
 }
 
 void GrainDynamics::set_force_density(const Vec3& density) {
-  if (density == force_density_) return;
-  force_density_ = density;
+  if (density == strength_.density) return;
+  strength_.density = density;
   compute_body_forces();
+}
+
+void GrainDynamics::keep_body_force() {
+  kept_strength_ = strength_;
+  kept_body_force_.clear();
 }
 
 void GrainDynamics::evaluate_forces(double time_step) {

@@ -136,6 +136,8 @@ public:
   void set_body_force_factor(double factor);
   // Adds a force on their volume (N/m^3): none at first, and the same holds.
   void set_force_density(const Vec3& density);
+  // Keeps both beside those that are set from now on.
+  void keep_body_force();
 
   // After the sub-steps: wraps positions and gives ghosts the final velocities of their owners. Collective.
   void refresh_ghosts();
@@ -152,6 +154,10 @@ public:
   const GrainStore& store() const { return store_; }
   // N; of a clump's member its share of the clump's
   const Vec3& body_force(std::size_t owned_slot) const { return body_force_[owned_slot]; }
+  // The same with the factor and the density that held when keep_body_force() was last called.
+  const Vec3& kept_body_force(std::size_t owned_slot) const {
+    return kept_body_force_.empty() ? body_force_[owned_slot] : kept_body_force_[owned_slot];
+  }
   // m, of the sphere (disk) with the volume of a grain, or of a member's whole clump
   double volume_radius(std::size_t owned_slot) const {
     return store_.clump[owned_slot] < 0 ? store_.radius[owned_slot] : clumps_.volume_radius(store_.clump[owned_slot]);
@@ -287,7 +293,13 @@ private:
   std::vector<Clump> load_clumps(ArchiveReader& archive, const std::string& group, const GrainBatch& batch,
                                  std::vector<int>& owner);
   void build_dependents(const ContactHistories& histories);
+  struct BodyForceStrength {
+    double factor = 1.0;
+    Vec3 density = Vec3::Zero();  // N/m^3
+    bool operator==(const BodyForceStrength&) const = default;
+  };
   void compute_body_forces();
+  void compute_body_forces(const BodyForceStrength& strength, std::vector<Vec3>& forces);
   std::vector<Vec3> places_in_clumps() const;
   void evaluate_forces(double time_step);
   bool touches_rough_floor(double z, double radius) const { return z - planes_[*rough_floor_].point.z() < radius; }
@@ -340,9 +352,8 @@ private:
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;
   std::vector<PlacedSolid> listed_solids_;
-  std::vector<Vec3> body_force_;  // of owned grains, times the factor
-  double body_force_factor_ = 1.0;
-  Vec3 force_density_ = Vec3::Zero();  // N/m^3
+  BodyForceStrength strength_, kept_strength_;
+  std::vector<Vec3> body_force_, kept_body_force_;  // N, of owned grains; the kept ones only where they are others
 
   PhaseTimer timer_;
   int lists_phase_, forces_phase_, motion_phase_, messages_phase_;

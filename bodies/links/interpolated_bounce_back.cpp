@@ -29,7 +29,7 @@ template <typename Real>
 InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links,
                                                      const PeriodicBox& box, const LinkOptions& options,
                                                      std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments,
-                                                     MomentumByHeight* by_height)
+                                                     int solids, MomentumByHeight* by_height)
     : cells_(fluid.cells()),
       tiles_(fluid.tiles()),
       links_(links),
@@ -37,6 +37,7 @@ InterpolatedBounceBack<Real>::InterpolatedBounceBack(lbm::Fluid<Real>& fluid, co
       options_(options),
       bodies_(bodies),
       moments_(moments),
+      solids_(solids),
       by_height_(by_height),
       block_(box, fluid.block().lower),
       next_(fluid.populations(), fluid.tiles()),
@@ -204,7 +205,8 @@ void InterpolatedBounceBack<Real>::finish(const Batch& b) {
     add_momentum(piece);
     add_pressure_and_mass(piece);
     if (by_height_) add_by_height(b, piece);
-    if constexpr (with_moments) add_moments(piece);
+    if constexpr (with_moments)
+      if (piece.body >= solids_) add_moments(piece);
   }
   for (int k = 0; k < b.size; ++k) base_[b.reflected_at[k]] = values_.reflected[k];
 }
@@ -265,8 +267,10 @@ void InterpolatedBounceBack<Real>::gather_narrow(const Batch& b) {
   for (int c = 0; c < b.narrow_count; ++c) {
     const int k = b.narrow[c];
     const LinkBody& other = bodies_[LinkTag::upstream_body(b.tag[k])];
-    upstream_.take(c, b.tag[k], b.distance[k], Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]), values_.deviation[k], other,
-                   box_.difference(body_of(b, k).centre, other.centre));
+    // Both vectors lead to nearest images, and of a solid as long as half the box they may go round it together.
+    const Vec3 round =
+        box_.difference(body_of(b, k).centre, other.centre) + Vec3(b.arm[0][k], b.arm[1][k], b.arm[2][k]);
+    upstream_.take(c, b.tag[k], b.distance[k], box_.difference(round, Vec3::Zero()), values_.deviation[k], other);
   }
   upstream_.find_populations(options_.rest_gradient);
   for (int c = 0; c < b.narrow_count; ++c) values_.second[b.narrow[c]] = static_cast<Real>(upstream_.population(c));

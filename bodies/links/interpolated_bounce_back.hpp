@@ -49,15 +49,17 @@ namespace thalweg::bodies {
 // Links are processed in batches, each of several bodies: prepare() finds and prefetches what they read and write, and
 // finish(), one batch later, does the exchange. Meanwhile the populations two planes ahead are prefetched.
 //
-// moments: where given, one for each body, to which sum F_a x_b is added, F the momentum of a link and x its arm; the
-// torque is its antisymmetric part. by_height: where given, the force of every link is added at the height half a link
+// moments: where given, one for each body, to which sum F_a x_b is added but for the first `solids` of them, F the
+// momentum of a link and x its arm; the torque is its antisymmetric part. (A solid as large as the box would leave the
+// range of exact sums.) by_height: where given, the force of every link is added at the height half a link
 // from its fluid cell.
 template <typename Real>
 class InterpolatedBounceBack {
 public:
   InterpolatedBounceBack(lbm::Fluid<Real>& fluid, const LinkTable& links, const PeriodicBox& box,
                          const LinkOptions& options, std::vector<LinkBody>& bodies,
-                         std::vector<FixedTensor>* moments = nullptr, MomentumByHeight* by_height = nullptr);
+                         std::vector<FixedTensor>* moments = nullptr, int solids = 0,
+                         MomentumByHeight* by_height = nullptr);
 
   void apply_tile(int tile);
 
@@ -171,7 +173,8 @@ private:
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
   std::vector<FixedTensor>* moments_;  // null: not measured
-  MomentumByHeight* by_height_;        // null: not measured
+  int solids_;
+  MomentumByHeight* by_height_;  // null: not measured
   BlockFrame block_;
 
   LinkSlots slots_;

@@ -83,7 +83,7 @@ void OccludedLinks::find_at_cell(int slot, const Index3& local, const std::vecto
     const std::int32_t other = beyond_wall ? CellMap::fluid : cells_.body(cell - cells_.indexing().offset(i));
     const bool same_body = clump >= 0 && other >= 0 && grains[static_cast<std::size_t>(other)].clump == clump;
     if (other != slot && !same_body && (other != CellMap::fluid || beyond_wall))
-      links_[static_cast<std::size_t>(slot)].push_back({i, from});
+      links_[static_cast<std::size_t>(slot)].push_back({i, from, other});
   }
 }
 
@@ -98,7 +98,7 @@ OccludedLinks::Momentum OccludedLinks::momentum_of(const Link& link, const LinkB
   return {2.0 * D3Q19::weight(link.direction) * rest_.deviation(link.from + along) * c, from + along};
 }
 
-void OccludedLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
+void OccludedLinks::apply(int solids, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const {
   CHECK(links_.size() <= bodies.size() && (!moments || moments->size() == bodies.size()));
   for (std::size_t slot = 0; slot < links_.size(); ++slot)
     for (const Link& link : links_[slot]) {
@@ -106,6 +106,12 @@ void OccludedLinks::apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor
       bodies[slot].force += FixedVec3::from(momentum.value);
       bodies[slot].torque += FixedVec3::from(momentum.arm.cross(momentum.value));
       if (moments) (*moments)[slot].add(momentum.value, momentum.arm);
+      if (link.body == CellMap::fluid || link.body >= solids) continue;
+      LinkBody& solid = bodies[static_cast<std::size_t>(link.body)];
+      solid.force += FixedVec3::from(-momentum.value);
+      if (solid.turns)
+        solid.torque +=
+            FixedVec3::from(-box_.difference(bodies[slot].centre + momentum.arm, solid.centre).cross(momentum.value));
     }
 }
 

@@ -1,11 +1,11 @@
-// Links without a fluid cell, where another grain or a wall of the box occludes a patch of a grain's surface.
+// Links without a fluid cell, where another grain, a solid or a wall of the box occludes a patch of a grain's surface.
 //
-// A lattice line enters a cell of grain p from a cell x_f that grain q covers, or that is beyond a wall. No population
-// runs there, but a fluid between the two would press. The exchange counts populations less their weight
+// A lattice line enters a cell of grain p from a cell x_f that grain or solid q covers, or that is beyond a wall. No
+// population runs there, but a fluid between the two would press. The exchange counts populations less their weight
 // (interpolated_bounce_back.hpp), so that the reference pressure needs no such links. What is left under full gravity
 // is the hydrostatic density above the reference, rho_g - 1 on the surface: momentum 2 w_i (rho_g - 1) c_i, without
-// which a grain that touches others or the floor would lose part of its buoyancy. There is no surface between members
-// of one clump, and so no such link. Lattice units.
+// which a grain that touches others or the floor would lose part of its buoyancy. A solid or a wall gets the opposite.
+// There is no surface between members of one clump, and so no such link. Lattice units.
 #pragma once
 
 #include "bodies/map/body_map.hpp"
@@ -31,8 +31,9 @@ public:
   // rest is the same everywhere. A link belongs to the rank that owns its solid cell.
   void update(const BodyMap& map);
 
-  // Adds the momentum of all hidden links to their bodies, and sum F_a x_b to moments, where given.
-  void apply(std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
+  // Adds the momentum of all hidden links to their grains, its opposite to the solids they come from, the first of the
+  // bodies, and sum F_a x_b of the grains to moments, where given.
+  void apply(int solids, std::vector<LinkBody>& bodies, std::vector<FixedTensor>* moments) const;
 
   // The opposite of the momentum of the hidden links that come from beyond a wall, by face (0 .. 5).
   std::array<FixedVec3, 6> wall_forces(const std::vector<LinkBody>& bodies) const;
@@ -41,8 +42,9 @@ public:
 
 private:
   struct Link {
-    int direction;  // into the grain
-    Vec3 from;      // x_f, global
+    int direction;      // into the grain
+    Vec3 from;          // x_f, global
+    std::int32_t body;  // slot of what covers x_f; CellMap::fluid beyond a wall
   };
 
   void mark(std::int32_t slot);

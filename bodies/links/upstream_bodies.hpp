@@ -20,15 +20,13 @@ public:
     count_ = count;
   }
 
-  // A link: delta, its crossing from the own body's centre, and rho - 1 at x_f; the body that covers x_ff, and the
-  // vector from its centre to that of the own body. Cells.
-  void take(int link, std::uint32_t tag, double distance, const Vec3& arm, double deviation, const LinkBody& other,
-            const Vec3& apart) {
+  // A link: delta, its crossing from the centre of the body that covers x_ff, rho - 1 at x_f, and this body. Cells.
+  void take(int link, std::uint32_t tag, double distance, const Vec3& arm, double deviation, const LinkBody& other) {
     tag_[link] = tag;
     distance_[link] = distance;
     deviation_[link] = deviation;
     for (int a = 0; a < 3; ++a) {
-      arm_[a][link] = apart[a] + arm[a];
+      arm_[a][link] = arm[a];
       velocity_[a][link] = other.velocity[a];
       spin_[a][link] = other.angular_velocity[a];
     }

@@ -255,7 +255,8 @@ void GrainBodies<Real>::set_load(std::size_t grain, const Vec3& force, const Vec
   const double share = light_load_.share(body);
   if (is_light && force_moves) {
     const Vec3 weight = grains_.body_force(grain);
-    const Vec3 before = kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + weight);
+    const Vec3 before =
+        kept.exchanges() == 0 ? Vec3::Zero() : Vec3(store.load_force[grain] + grains_.kept_body_force(grain));
     const Vec3 mean = averaged_load(LoadAveraging::mean, force, kept.last_force(), kept.earlier_force());
     store.load_force[grain] = LightLoad::filtered(before, mean + weight, share) - weight;
   } else {

@@ -108,6 +108,7 @@ void LatticeSystem<Real>::advance() {
     momentum_.reset();
     solid_bodies_.forget_loaded();
     move_bodies();
+    if (grains_) grains_->keep_body_force();
     set_gravity_of(step_ + 1);
     exchange_behind_links();
     if (next_.momentum_by_height) record_momentum_budget();
@@ -208,13 +209,13 @@ void LatticeSystem<Real>::take_loads() {
   mass_.record(MassBudget::links, totals.link_mass);
   mass_.record(MassBudget::uncovered, totals.refilled_mass);
   mass_.record(MassBudget::covered, totals.covered_mass);
+  grains_->set_force_density(held_force_on_grains());
   grain_bodies_->take_loads();
 }
 
 template <typename Real>
 void LatticeSystem<Real>::advance_grains() {
   const auto scope = timer_.measure(phases_.grains);
-  grains_->set_force_density(held_force_on_grains());
   grains_->advance(parameters_.sub_steps);
   grains_->refresh_ghosts();
 }

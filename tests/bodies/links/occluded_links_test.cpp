@@ -81,7 +81,7 @@ TEST(OccludedLinks, CarryWhatTheDefinitionSaysOnAnyRanks) {
   }
   map.settle();
   links.update(map);
-  links.apply(bodies, nullptr);
+  links.apply(0, bodies, nullptr);
   const std::vector<Load> expected = loads_by_definition(balls, rest);
   EXPECT_GT(sum_over_ranks(MPI_COMM_WORLD, static_cast<std::int64_t>(links.count())), 40);
   for (std::size_t s = 0; s < balls.size(); ++s)

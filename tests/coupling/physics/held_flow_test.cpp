@@ -53,5 +53,24 @@ TEST(HeldFlow, GoesOnAfterARestart) {
   EXPECT_EQ(straight->grains().store().velocity[0], resumed->grains().store().velocity[0]);
 }
 
+// The force that holds the flow is a change of body force: in its first step it moves a light grain together with the
+// fluid that goes with it, (m + m_C) dv/dt = F V (light_load.hpp), while the links give nothing yet.
+TEST(HeldFlow, BeginsToMoveALightGrainTogetherWithItsFluid) {
+  WaterBox box = starting_flow(true);
+  constexpr double density = 100.0;
+  box.seeds.back().density = density;
+  const auto system =
+      make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
+  system->advance();
+  const double force = find_diagnostic(system->diagnostics(), "body_force_x").value();
+  const LightLoad light{1000.0, box.spacing};
+  const double radius = box.seeds.back().radius, volume = Sphere{radius}.volume(), mass = density * volume;
+  const dem::GrainStore& grains = system->grains().store();
+  const double speed = sum_over_ranks(MPI_COMM_WORLD, grains.owned == 1 ? grains.velocity[0].x() : 0.0);
+  const double expected = force * volume * box.time_step / (mass + light.added_mass({mass, radius, 2.0 * radius}));
+  EXPECT_GT(force, 0.0);
+  EXPECT_NEAR(speed, expected, 0.05 * expected);
+}
+
 }  // namespace
 }  // namespace thalweg::coupling::held_flow_test
