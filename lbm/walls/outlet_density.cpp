@@ -1,5 +1,6 @@
 #include "lbm/walls/outlet_density.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 namespace thalweg::lbm {
@@ -17,6 +18,8 @@ OutletDensity::OutletDensity(double asked_for, int cells_across)
 double OutletDensity::deviation() const {
   return asked_for_ + (mean_momentum_ ? (momentum_ - *mean_momentum_) / speed_of_sound : 0.0);
 }
+
+double OutletDensity::entering_speed() const { return std::max(0.0, -mean_momentum_.value_or(0.0)); }
 
 void OutletDensity::update(double mean_momentum) {
   momentum_ = mean_momentum;

@@ -1,5 +1,5 @@
-// The density beyond an outlet, of which the populations that enter there are the equilibrium, with the velocity of the
-// cell that they enter. It is the same all over the face. Lattice units.
+// The density beyond an outlet, of which the populations that enter there are the equilibrium, and the speed at which
+// fluid enters. Both are the same all over the face. Lattice units.
 //
 //   d_w = d_0 + (m - m_s)/c_s,      m_s(t+1) = m_s + (m - m_s)/T,      T = 5 L/c_s
 //
@@ -23,8 +23,8 @@ public:
   // asked_for: rho - 1. cells_across: of the box, along the normal of the face.
   OutletDensity(double asked_for, int cells_across);
 
-  double deviation() const;                           // d_w of the coming exchange
-  bool lets_out() const { return momentum_ >= 0.0; }  // true if the fluid leaves, on the whole
+  double deviation() const;       // d_w of the coming exchange
+  double entering_speed() const;  // of fluid that enters, along the inward normal: max(0, -m_s)
 
   // Takes the mean of rho u along the outward normal over the fluid cells at the face after a step.
   void update(double mean_momentum);

@@ -76,10 +76,14 @@ Real Walls<Real>::at_outlet(const Populations<Real>& populations, const Incoming
   }
   const OutletDensity& outlet = *outlets_[incoming.face];
   Vec3 velocity = momentum / density;
-  const double inwards = std::max(0.0, (incoming.face % 2 == 0 ? 1.0 : -1.0) * velocity[incoming.axis]);
-  const bool backflow = inwards > 0.0 && outlet.lets_out();
-  if (backflow) velocity = Vec3::Zero();
-  const double lost = backflow ? 0.0 : 1.5 * inwards * inwards;  // of the density: that of rho w^2/2
+  const double inwards = incoming.face % 2 == 0 ? 1.0 : -1.0;
+  double lost = 0.0;  // of the density: that of rho w^2/2
+  if (inwards * velocity[incoming.axis] > 0.0) {
+    const double speed = outlet.entering_speed();
+    velocity = Vec3::Zero();
+    velocity[incoming.axis] = inwards * speed;
+    lost = 1.5 * speed * speed;
+  }
   return static_cast<Real>(equilibrium_deviation(incoming.direction, outlet.deviation() - lost, velocity));
 }
 
