@@ -1,9 +1,9 @@
 // The program: one command line, the same on every rank. Only `run` starts MPI.
 #include "core/base/error.hpp"
+#include "core/base/error_message.hpp"
 #include "core/parallel/failure_barrier.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "driver/cli/command_line.hpp"
-#include "driver/cli/error_message.hpp"
 #include "driver/cli/info_report.hpp"
 #include "driver/cli/info_table.hpp"
 #include "driver/cli/python_command.hpp"
@@ -112,19 +112,13 @@ std::vector<std::string> check_of(const Command& command, const Case& c) {
   return about_case(command.path, [&] { return check_report(c, bandwidth_for(c)); });
 }
 
-std::vector<std::string> settings_of(const Command& command) {
-  std::vector<std::string> settings = command.settings;
-  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
-  return settings;
-}
-
-Case case_of(const Command& command) { return read_case(command.path, settings_of(command)); }
+Case case_of(const Command& command) { return read_case(command.path, command.all_settings()); }
 
 // The report, and the refusal of what this machine has not the memory for: it is said last, with the report to go by.
 void check(const Command& command) {
   const Case c = case_of(command);
   if (command.solve) {
-    std::fputs(joined(solution_report(c, command.path, settings_of(command))).c_str(), stdout);
+    std::fputs(joined(solution_report(c, command.path, command.all_settings())).c_str(), stdout);
     return;
   }
   const auto json = [&] { return about_case(command.path, [&] { return check_json(c, bandwidth_for(c)); }); };
@@ -176,7 +170,7 @@ std::string answer(const Command& command) {
 }
 
 // Every command but run, and complaints about the command line. Of several ranks only the first does anything.
-int all_failed_without_mpi(const CommandLine& line) {
+int run_without_mpi(const CommandLine& line) {
   if (!first_of_its_launcher()) return line.exit_code;
   flush_denormals_to_zero();
   try {
@@ -199,5 +193,5 @@ int main(int argc, char** argv) {
   if (line.command && line.command->kind == Command::Kind::run) return run(*line.command, argc, argv, started);
   if (line.command && line.command->kind == Command::Kind::check && !line.command->ranks.empty())
     return plan(*line.command, argc, argv);
-  return all_failed_without_mpi(line);
+  return run_without_mpi(line);
 }

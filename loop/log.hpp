@@ -1,7 +1,6 @@
 // Log: lines on standard output and, once a run folder exists, also in run.log.
 #pragma once
 
-#include <fstream>
 #include <string>
 
 namespace thalweg::loop {
@@ -10,6 +9,9 @@ class Log {
 public:
   // prints: true on rank 0; the log of all other ranks does nothing.
   explicit Log(bool prints) : prints_(prints) {}
+  ~Log();
+  Log(Log&& other) noexcept;
+  Log& operator=(Log&& other) noexcept;
 
   // Appends all lines, earlier ones included, to this file as well from now on. Throws RunError.
   void copy_to(const std::string& path);
@@ -19,9 +21,11 @@ public:
   bool prints() const { return prints_; }
 
 private:
+  void write_kept_lines();
+
   bool prints_;
-  std::string before_file_;
-  std::ofstream file_;
+  int file_ = -1;           // its descriptor
+  std::string kept_lines_;  // not yet in the file
 };
 
 }  // namespace thalweg::loop

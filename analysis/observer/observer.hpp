@@ -55,8 +55,8 @@ public:
 
   // Running sums, so that a restarted run reports the same means as one that was never interrupted. Collective.
   virtual void save(ArchiveWriter& archive) const = 0;
-  // False: the archive holds none, or those of other settings, and they begin here. Throws DamagedFile if the archive
-  // holds some that nothing can be made of.
+  // Called once, on an observer that has seen nothing. False: the archive holds none, or those of other settings, and
+  // they begin here. Throws DamagedFile if the archive holds some that nothing can be made of.
   virtual bool load(ArchiveReader& archive) = 0;
 };
 

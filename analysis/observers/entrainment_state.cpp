@@ -1,7 +1,7 @@
 // State of Entrainment in a checkpoint: one row for every id, and the samples and touches of all rings, one after the
 // other in the order of ids.
 #include "analysis/observers/entrainment.hpp"
-#include "core/parallel/mpi_session.hpp"
+#include "core/parallel/row_range.hpp"
 
 #include <algorithm>
 
@@ -11,18 +11,9 @@ namespace {
 
 constexpr std::ptrdiff_t of_sphere = 7;  // values of a touch: arm, force and distance; from_centre after them
 
-// This rank's rows among those of all, which lie in the order of ranks. Collective.
-ArrayBox box_of_rows(MPI_Comm communicator, std::int64_t rows, std::uint64_t columns) {
-  std::int64_t before = 0;
-  MPI_Exscan(&rows, &before, 1, MPI_INT64_T, MPI_SUM, communicator);
-  if (rank_of(communicator) == 0) before = 0;
-  const auto all = static_cast<std::uint64_t>(sum_over_ranks(communicator, rows));
-  return {{all, columns}, {static_cast<std::uint64_t>(before), 0}, {static_cast<std::uint64_t>(rows), columns}};
-}
-
 std::vector<double> read_rows(ArchiveReader& archive, MPI_Comm communicator, const std::string& path, std::int64_t rows,
                               std::uint64_t columns) {
-  const ArrayBox box = box_of_rows(communicator, rows, columns);
+  const ArrayBox box = RowRange::of_rows(rows, communicator).box(columns);
   std::vector<double> values(static_cast<std::size_t>(rows) * columns);
   archive.read(path, std::span<double>(values), box);
   return values;
@@ -67,7 +58,7 @@ void Entrainment::save(ArchiveWriter& archive) const {
     values.push_back(static_cast<double>(row.touches));
   }
   archive.write("entrainment/samples", std::span<const double>(values),
-                box_of_rows(communicator_, static_cast<std::int64_t>(samples.size()), sample_columns));
+                RowRange::of_rows(static_cast<std::int64_t>(samples.size()), communicator_).box(sample_columns));
   values.clear();
   for (const TouchRow& row : touches) {
     values.push_back(static_cast<double>(row.partner));
@@ -77,7 +68,7 @@ void Entrainment::save(ArchiveWriter& archive) const {
     values.insert(values.end(), row.values.begin() + of_sphere, row.values.end());
   }
   archive.write("entrainment/touches", std::span<const double>(values),
-                box_of_rows(communicator_, static_cast<std::int64_t>(touches.size()), touch_columns()));
+                RowRange::of_rows(static_cast<std::int64_t>(touches.size()), communicator_).box(touch_columns()));
 }
 
 bool Entrainment::load(ArchiveReader& archive) {

@@ -202,10 +202,7 @@ std::vector<std::string> StressBalance::remarks() const {
   if (measurements() == 0) return {"stress balance: nothing was measured"};
   const std::vector<Diagnostic> r = results();
   const bool at_sides = std::any_of(sides_.begin(), sides_.end(), [](double force) { return force != 0.0; });
-  const auto value = [&r](const std::string& name) {
-    return std::find_if(r.begin(), r.end(), [&name](const Diagnostic& diagnostic) { return diagnostic.name == name; })
-        ->value;
-  };
+  const auto value = [&r](const std::string& name) { return find_diagnostic(r, name).value(); };
   const char* where = value("bed_height") > 0.0 ? "on the bed" : "at most";
   return {fmt::format(
       "largest difference of the total stress from the driving stress{}: {:.2g} % of the {:.4g} Pa {}, at z = "

@@ -12,6 +12,6 @@ namespace thalweg {
 using Vec3 = Eigen::Vector3d;       // a vector in space: x streamwise, y cross-stream, z up
 using Mat3 = Eigen::Matrix3d;       // a second-rank tensor
 using Index3 = std::array<int, 3>;  // cell counts or cell coordinates (x, y, z)
-using GlobalId = std::int64_t;      // a grain's name for life: 0 .. number of grains - 1
+using GlobalId = std::int64_t;      // a grain's name for life, from 0 on; no other grain ever has it
 
 }  // namespace thalweg

@@ -46,12 +46,11 @@ Block intersection(Block a, const Block& b);
 
 class Decomposition {
 public:
-  // cells: global number of cells; spacing: m (or 1 for lattice units); layout: ranks along x, y, z.
   static constexpr int min_cells_per_rank = 4;
   static constexpr Index3 fewest{min_cells_per_rank, min_cells_per_rank, min_cells_per_rank};
 
-  // least: cells that a rank needs along each axis that is cut, at least min_cells_per_rank. Throws InputError where
-  // one would get fewer.
+  // cells: global number of cells; spacing: m (or 1 for lattice units); layout: ranks along x, y, z; least: cells that
+  // a rank needs along each axis that is cut, at least min_cells_per_rank. Throws InputError where one would get fewer.
   Decomposition(const Index3& cells, double spacing, const std::array<bool, 3>& periodic, const Index3& layout,
                 const Index3& least = fewest);
 

@@ -1,6 +1,7 @@
 #include "core/parallel/on_first_rank.hpp"
 
 #include "core/base/error.hpp"
+#include "core/base/error_message.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_all_ranks.hpp"
 
@@ -22,7 +23,7 @@ Outcome outcome_of(const std::function<void()>& work, std::string& message) {
     message = error.what();
     return input_error;
   } catch (const std::exception& error) {
-    message = error.what();
+    message = error_message(error);
     return run_error;
   }
   return well;

@@ -33,7 +33,6 @@ struct RowRange {
             {static_cast<std::uint64_t>(last - first)}};
   }
   std::int64_t size() const { return last - first; }
-  bool has(std::int64_t row) const { return row >= first && row < last; }
 
   std::int64_t count, first, last;
 };

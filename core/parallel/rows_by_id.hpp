@@ -18,7 +18,6 @@ public:
 
   std::int64_t rows() const { return rows_; }
   std::int64_t blocks() const { return blocks_; }
-  std::int64_t rows_per_block() const { return per_block_; }
 
   // The blocks and the rows of a rank.
   RowRange blocks_of(int rank) const { return {blocks_, ranks_, rank}; }

@@ -1,6 +1,7 @@
 #include "coupling/loads/mass_budget.hpp"
 
 #include "core/parallel/mpi_session.hpp"
+#include "core/sums/wide_sums_over_ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -24,14 +25,8 @@ void MassBudget::open(double excess, double owed) {
 }
 
 std::array<WideSum, MassBudget::terms> MassBudget::totals_exact() const {
-  static_assert(sizeof(sums_) == 2 * terms * sizeof(std::int64_t));
-  constexpr int words = 2 * terms;
-  const std::size_t ranks = static_cast<std::size_t>(size_of(communicator_));
-  std::vector<std::array<WideSum, terms>> all(ranks);
-  MPI_Allgather(sums_.data(), words, MPI_INT64_T, all.data(), words, MPI_INT64_T, communicator_);
-  std::array<WideSum, terms> totals{};
-  for (const auto& of_rank : all)
-    for (std::size_t k = 0; k < terms; ++k) totals[k].add(of_rank[k]);
+  std::array<WideSum, terms> totals = sums_;
+  sum_over_ranks(communicator_, totals);
   return totals;
 }
 

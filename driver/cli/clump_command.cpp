@@ -7,6 +7,7 @@
 #include "dem/clumps/clump_of_body.hpp"
 #include "driver/cli/python_command.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/text/section_writer.hpp"
 #include "io/text/stl_file.hpp"
 
 #include <fmt/format.h>
@@ -103,12 +104,12 @@ std::vector<std::string> clump_report(const ClumpOrder& order) {
   if (const auto folder = std::filesystem::path(out).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, ignored);
   io::write_text_atomically(out + ".yaml", shape_yaml(clump));
-  std::string keys = fmt::format("stl: {}", order.surface);
+  std::string keys = fmt::format("stl: {}", io::yaml_text(order.surface));
   if (order.spheres) keys += fmt::format(", spheres: {}", *order.spheres);
-  if (order.tolerance) keys += fmt::format(", tolerance: {:g}", *order.tolerance);
-  if (order.scale != 1.0) keys += fmt::format(", scale: {:g}", order.scale);
+  if (order.tolerance) keys += fmt::format(", tolerance: {}", io::shortest(*order.tolerance));
+  if (order.scale != 1.0) keys += fmt::format(", scale: {}", io::shortest(order.scale));
   lines.insert(lines.end(), {"in a case", "  grains:", fmt::format("    - shape: {{{}}}", keys),
-                             fmt::format("      density: {:g}", order.density), "      count: 100",
+                             fmt::format("      density: {}", io::shortest(order.density)), "      count: 100",
                              fmt::format("or, without the STL file, the keys in {}.yaml", out)});
   return lines;
 }

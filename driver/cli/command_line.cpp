@@ -19,6 +19,12 @@
 
 namespace thalweg::driver {
 
+std::vector<std::string> Command::all_settings() const {
+  std::vector<std::string> all = settings;
+  if (until) all.push_back(fmt::format("run.until={}", *until));
+  return all;
+}
+
 namespace {
 
 struct Example {

@@ -34,6 +34,8 @@ struct Command {
   Experiment experiment;   // of create
   ClumpOrder clump_order;
   std::string line;  // the command as given
+
+  std::vector<std::string> all_settings() const;  // of --set, and the end of --until
 };
 
 struct CommandLine {

@@ -36,8 +36,10 @@ double wanted_end(const fs::path& case_file, const std::vector<std::string>& set
   const io::YamlDocument document(case_file, settings);
   double end = std::numeric_limits<double>::infinity();
   if (const io::YamlNode* until = document.find("run.until")) {
-    const char* first = until->text.data();
-    std::from_chars(first + (until->text.starts_with('+') ? 1 : 0), first + until->text.size(), end);
+    double value = 0.0;
+    const char *first = until->text.data(), *last = first + until->text.size();
+    const auto parsed = std::from_chars(first + (until->text.starts_with('+') ? 1 : 0), last, value);
+    if (parsed.ec == std::errc() && parsed.ptr == last) end = value;
   }
   return end;
 }

@@ -2,10 +2,10 @@
 
 #include "continuum/continuum_system.hpp"
 #include "core/base/error.hpp"
+#include "core/base/error_message.hpp"
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "dem/grain_system.hpp"
-#include "driver/cli/error_message.hpp"
 #include "driver/cli/resume.hpp"
 #include "driver/cli/run_paths.hpp"
 #include "driver/cli/run_report.hpp"
@@ -49,12 +49,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> settings_of(const Command& command) {
-  std::vector<std::string> settings = command.settings;
-  if (command.until) settings.push_back(fmt::format("run.until={}", *command.until));
-  return settings;
-}
-
 // Replaces --resume in the command by --restart, --overwrite or neither, as the folder requires. lock: of the folder,
 // if it holds an unfinished run. Returns an outcome if there is nothing to run.
 std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& lock, MPI_Comm communicator,
@@ -64,7 +58,7 @@ std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& l
   io::FolderLock taken;
   int found = 0;
   on_first_rank(communicator, [&] {
-    found = static_cast<int>(resumption_of(folder, wanted_end(command.path, settings_of(command)), taken));
+    found = static_cast<int>(resumption_of(folder, wanted_end(command.path, command.all_settings()), taken));
   });
   MPI_Bcast(&found, 1, MPI_INT, 0, communicator);
   switch (static_cast<Resumption>(found)) {
@@ -91,11 +85,12 @@ std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& l
   return {};
 }
 
-// Changes since the run that is continued. Throws InputError if that run cannot continue with the case.
-std::vector<CaseChange> changes_since(const RunPaths& paths, const Case& c, MPI_Comm communicator) {
+// Changes since this checkpoint of the run that is continued. Throws InputError if it cannot go on with the case.
+std::vector<CaseChange> changes_since(const fs::path& checkpoint, const RunPaths& paths, const Case& c,
+                                      MPI_Comm communicator) {
   if (paths.origin.empty()) return {};
-  const std::string before = told_by_first_rank(
-      communicator, [&] { return io::read_text(io::RunFolder(paths.origin).case_of(paths.checkpoints.front())); });
+  const std::string before =
+      told_by_first_rank(communicator, [&] { return io::read_text(io::RunFolder(paths.origin).case_of(checkpoint)); });
   std::vector<CaseChange> changes = case_changes(before, resolved_yaml(c));
   // A surface stands there with its path from the folder.
   std::erase_if(changes, [&](const CaseChange& change) {
@@ -214,26 +209,30 @@ public:
                   c.run.until,
                   choose_layout(c, size_of(communicator), command.layout),
                   size_of(communicator)} {
-    start_point_.changes = changes_since(paths, c, communicator);
+    if (restarts()) start_point_.changes = changes_since(paths.checkpoints.front(), paths, c, communicator);
     if (!c.grains.empty()) identity_.reference = reference_grain(c);
-    identity_.has_rows = c.output.series.every > 0.0;
+    identity_.has_rows = has_series_rows(c);
     build();
     read_state();
   }
 
   // Prepares the folder and prints the header. lock: of the folder, taken here if need be.
-  void begin(std::optional<io::FolderLock>& lock, loop::Log& log) {
+  void begin(std::optional<io::FolderLock>& lock, FailureBarrier& failures, loop::Log& log) {
     if (!lock) lock = lock_folder(paths_, communicator_);
     output_.emplace(communicator_, case_, paths_.folder, *system_, observers_, loop::series_row(*system_, observers_),
                     start_point_.run_history.since,
                     paths_.same_folder ? std::optional<double>(system_->time()) : std::nullopt);
     prepare_folder(paths_, case_, command_, system_->step(), communicator_, log);
-    identity_.provenance = provenance_of(case_, paths_.folder.path(), communicator_);
-    print_header(case_, identity_, *system_, paths_.folder, start_point_, bandwidth_, communicator_, log);
-    if (!lock->keeps_others_out())
-      log.line(fmt::format("warning: the file system of {} has no locks: make sure that no other run writes there",
-                           paths_.folder.path().string()));
-    if (const std::string gap = output_->begin(); !gap.empty()) log.line("warning: " + gap);
+    try {
+      identity_.provenance = provenance_of(case_, paths_.folder.path(), communicator_);
+      print_header(case_, identity_, *system_, paths_.folder, start_point_, bandwidth_, communicator_, log);
+      if (!lock->keeps_others_out())
+        log.line(fmt::format("warning: {} cannot be locked: make sure that no other run writes there",
+                             paths_.folder.path().string()));
+      if (const std::string gap = output_->begin(); !gap.empty()) log.line("warning: " + gap);
+    } catch (const std::exception& error) {
+      fail(error, before_the_first_step(), failures, log);
+    }
   }
 
   Outcome advance(loop::WallClock::time_point started, FailureBarrier& failures, loop::Log& log) {
@@ -243,15 +242,23 @@ public:
     try {
       time_loop.run();
       if (!case_.grains.empty()) io::write_bed_file(communicator_, paths_.folder.bed(), system_->snapshot());
+      conclude(plan, time_loop, log);
     } catch (const std::exception& error) {  // whatever it is, it is the run that has failed
       fail(error, time_loop.record(), failures, log);
     }
-    conclude(plan, time_loop, log);
     return outcome_of(time_loop.record());
   }
 
 private:
   bool restarts() const { return !paths_.checkpoints.empty(); }
+
+  loop::LoopRecord before_the_first_step() const {
+    loop::LoopRecord record;
+    record.first_step = record.last_step = system_->step();
+    record.largest = start_point_.run_history.largest;
+    record.largest_from = start_point_.run_history.largest_from;
+    return record;
+  }
 
   void build() {
     const Case& c = case_;
@@ -264,8 +271,12 @@ private:
     const Decomposition partition =
         about_case(command_.path, [&] { return partition_of_run(c, communicator_, identity_.layout, state); });
     system_ = about_case(command_.path, [&] { return build_system(c, communicator_, partition, start); });
-    observers_ = make_observers(c.analysis.observers, run_context(c),
-                                {communicator_, *system_->snapshot().decomposition, system_->time_step()});
+    observers_ = new_observers();
+  }
+
+  Observers new_observers() const {
+    return make_observers(case_.analysis.observers, run_context(case_),
+                          {communicator_, *system_->snapshot().decomposition, system_->time_step()});
   }
 
   void read_state() {
@@ -273,8 +284,11 @@ private:
       about_case(command_.path, [&] { take_initial_fields(communicator_, case_, *system_); });
       return;
     }
-    start_point_.checkpoint = read_first_whole_checkpoint(communicator_, paths_.checkpoints, case_, *system_,
-                                                          observers_, start_point_.damage, start_point_.run_history);
+    start_point_.checkpoint = read_first_whole_checkpoint(
+        communicator_, paths_.checkpoints, case_, *system_, observers_, [&] { return new_observers(); },
+        start_point_.damage, start_point_.run_history);
+    if (!start_point_.damage.empty())
+      start_point_.changes = changes_since(start_point_.checkpoint, paths_, case_, communicator_);
     if (system_->step() > loop::final_step(case_.run.until, system_->time_step()))
       throw InputError(fmt::format("{} is at {:.6g} s already and the run ends at {:.6g} s: give a later --until.",
                                    start_point_.checkpoint.string(), system_->time(), case_.run.until));
@@ -336,7 +350,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     lock = lock_folder(paths, communicator);
     paths = paths_of(command, communicator);
   }
-  const Case c = read_case(command.path, settings_of(command), beds_of(paths.checkpoints), communicator);
+  const Case c = read_case(command.path, command.all_settings(), beds_of(paths.checkpoints), communicator);
   on_first_rank(communicator, [&] {
     if (!paths.same_folder) paths.folder.check_new(command.overwrite);
     paths.folder.check_writable();
@@ -344,7 +358,7 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
   CaseRun run(command, paths, c, communicator);
   loop::listen_for_stop_signals();
   MPI_Barrier(communicator);  // a rank that was ended instead keeps the others from beginning
-  run.begin(lock, log);
+  run.begin(lock, failures, log);
   return run.advance(started, failures, log);
 }
 

@@ -18,7 +18,7 @@ struct RunPaths {
   bool same_folder = false;  // the checkpoints are the folder's own: its series go on
 };
 
-// The folder of a run that no other one is the start of: --out, or `run` beside the case.
+// The folder of a run without --restart: --out, or `run` beside the case.
 std::filesystem::path folder_without_restart(const Command& command);
 
 // The paths found by the first rank. Throws InputError if --restart names no checkpoint. Collective.

@@ -12,10 +12,10 @@ namespace thalweg::driver {
 // Memory of this node within the limits of container and job, bytes.
 double memory_of_this_node();
 
-// Part of it that is free for new runs, bytes.
+// Memory of this node that nothing uses now, bytes.
 double free_memory_for_runs();
 
-// The part of it that is a run's; the rest is the system's.
+// Memory of this node that a run may take, nine tenths, bytes; the rest is the system's.
 double usable_memory_of_this_node();
 
 // Memory needed by a case on one rank, bytes.

@@ -349,7 +349,7 @@ double given_speed(const Case& c, const beds::Population& grains) {
   if (grains.fixed) return 0.0;
   const Vec3 velocity = grains.prescribed_velocity.value_or(grains.velocity),
              spin = grains.prescribed_angular_velocity.value_or(grains.angular_velocity);
-  return std::max(velocity.norm(), 0.5 * grains.largest_extent() * spin.norm());
+  return velocity.norm() + 0.5 * grains.largest_extent() * spin.norm();
 }
 
 double estimated_velocity(const Case& c) {

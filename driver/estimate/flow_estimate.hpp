@@ -75,8 +75,8 @@ struct FlowEstimate {
 // All 0 without a fluid.
 FlowEstimate flow_estimate(const Case& c);
 
-// m/s, the largest that a case gives to the grains of a population, or to their surfaces by a spin: at the start, held,
-// or by a rigid motion anywhere in their region or the box.
+// m/s, the largest that a case gives to the surfaces of the grains of a population: at the start, held, or by a rigid
+// motion anywhere in their region or the box.
 double given_speed(const Case& c, const beds::Population& grains);
 
 // The speed (m/s) that a flow driven by gravity along the bed can reach, whatever the time of the run. An upper

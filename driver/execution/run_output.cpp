@@ -33,6 +33,7 @@ static std::vector<Diagnostic> joined(std::vector<Diagnostic> row, const std::ve
 static void remove_if_later(const std::filesystem::path& file, const std::string& attribute, double time) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return;
+  io::check_readable(file);
   try {
     if (io::Hdf5Reader(file).real_attribute(attribute) <= time) return;
   } catch (const InputError&) {  // whatever is in it, it is not of this state

@@ -1,4 +1,4 @@
-// Results of a run: summary.json for scripts, a table of phases for people.
+// Results of a run for scripts: summary.json.
 #pragma once
 
 #include "driver/cost/memory.hpp"

@@ -82,29 +82,17 @@ double weight_over_section(const Case& c) {
   double least = never;
   for (const beds::Population& grains : c.grains) {
     const double excess = std::abs(grains.density - c.fluid.density);
-    if (grains.fixed || grains.prescribed_velocity || grains.motion || excess == 0.0) continue;
+    if (grains.held() || excess == 0.0) continue;
     least = std::min(least, 2.0 / 3.0 * excess * gravity_vector(c.gravity).norm() * grains.smallest_diameter());
   }
   return least > 0.0 ? least : never;
 }
 
-// The largest speed of a population, or of the walls, by what the case says; m/s.
-double prescribed_speed(const Case& c) {
+// The largest speed of a population, a wall, a solid or a supply, by what the case says; m/s.
+double largest_given_speed(const Case& c) {
   double largest = 0.0;
-  const double across = c.domain.size.norm();
-  for (const beds::Population& grains : c.grains) {
-    const double radius = 0.5 * grains.largest_extent();
-    double speed = grains.velocity.norm() + grains.angular_velocity.norm() * radius;
-    if (grains.prescribed_velocity) speed = std::max(speed, grains.prescribed_velocity->norm());
-    if (grains.prescribed_angular_velocity)
-      speed = std::max(speed, grains.prescribed_angular_velocity->norm() * radius);
-    if (grains.motion)
-      speed = std::max(
-          speed, grains.motion->velocity.norm() + oscillation_speed(grains.motion->oscillation) +
-                     (grains.motion->rotation ? std::abs(grains.motion->rotation->angular_velocity) * across : 0.0));
-    speed = std::max(speed, grains.figures.fastest);
-    largest = std::max(largest, speed);
-  }
+  for (const beds::Population& grains : c.grains)
+    largest = std::max({largest, given_speed(c, grains), grains.figures.fastest});
   for (const coupling::FaceKeys& face : c.domain.faces)
     if (face.has_velocity()) largest = std::max(largest, face.velocity.norm() + oscillation_speed(face.oscillation));
   for (const beds::WallKeys& wall : c.walls)
@@ -257,7 +245,7 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
 }  // namespace
 
 double expected_grain_speed(const Case& c) {
-  const double speed = fall_speed(c) + prescribed_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) +
+  const double speed = fall_speed(c) + largest_given_speed(c) + expected_flow_speed(c) + fastest_model_fluid(c) +
                        speed_of_overlaps(c) + speed_of_bridges(c);
   return std::max(speed, speed_of_rounding(c));
 }

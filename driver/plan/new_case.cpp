@@ -18,6 +18,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -313,8 +315,12 @@ std::vector<std::string> write_new_case(const Experiment& experiment, const std:
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored))
     throw InputError(fmt::format("{} exists: give another file.", path.string()));
+  std::filesystem::path draft = path;  // beside the file, which is there once it is whole
+  draft += fmt::format(".draft.{}", ::getpid());
   try {
-    const Case c = solved(experiment, path, bandwidth);
+    const Case c = solved(experiment, draft, bandwidth);
+    io::write_text_atomically(path, io::read_text(draft));
+    std::filesystem::remove(draft, ignored);
     const Index3 cells = cells_of(c.domain);
     std::vector<std::string> remarks{fmt::format(
         "{}: {} grains in {} x {} x {} cells to {:g} s, about {} on {} core{}", path.string(), grain_count(c), cells[0],
@@ -327,7 +333,7 @@ std::vector<std::string> write_new_case(const Experiment& experiment, const std:
     remarks.push_back("next: thalweg check " + shell_word(path.string()));
     return remarks;
   } catch (...) {
-    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(draft, ignored);
     throw;
   }
 }

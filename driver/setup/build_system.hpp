@@ -34,6 +34,4 @@ std::unique_ptr<System> build_grains_system(const Case& c, MPI_Comm communicator
 std::unique_ptr<System> build_continuum_system(const Case& c, MPI_Comm communicator, const Decomposition& cuts,
                                                Start start);
 
-// The name of a kind of system in a case file: "resolved", "fluid", "grains", "model_fluid" or "continuum".
-
 }  // namespace thalweg::driver

@@ -147,6 +147,7 @@ RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::pa
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
+                                                  const std::function<Observers()>& new_observers,
                                                   std::vector<std::string>& damage, RunHistory& run_history) {
   for (const std::filesystem::path& path : checkpoints) {
     try {
@@ -155,6 +156,7 @@ std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
     } catch (const DamagedFile& error) {
       if (path == checkpoints.back()) throw;
       damage.emplace_back(error.what());
+      observers = new_observers();
     }
   }
   throw InputError("There is no checkpoint to restart from.");

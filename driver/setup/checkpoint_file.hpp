@@ -10,6 +10,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,12 @@ std::string kept_case_of(const Case& c);
 RunHistory read_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c, System& system,
                                 Observers& observers);
 
-// Reads the first undamaged checkpoint and returns its path; appends a sentence about each damaged one to `damage`.
+// Reads the first undamaged checkpoint and returns its path; appends a sentence about each damaged one to `damage`. A
+// damaged one may have been read in part: after it, `observers` are made anew.
 std::filesystem::path read_first_whole_checkpoint(MPI_Comm communicator,
                                                   const std::vector<std::filesystem::path>& checkpoints, const Case& c,
                                                   System& system, Observers& observers,
+                                                  const std::function<Observers()>& new_observers,
                                                   std::vector<std::string>& damage, RunHistory& run_history);
 
 }  // namespace thalweg::driver

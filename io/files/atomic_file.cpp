@@ -13,25 +13,35 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
 namespace thalweg::io {
 
 namespace {
 
-// Returns the name under which the text stands until it is renamed.
-std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& text) {
+// Removes what is left of a full disk, whose room other files need.
+void remove_if_there(const std::filesystem::path& partial) {
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+}
+
+// The error of a file that the last call could not write.
+RunError cannot_write(const std::filesystem::path& path) {
+  return RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+}
+
+// Writes the text under a name (path + ending) until it is renamed, and returns this name.
+std::filesystem::path write_partial(const std::filesystem::path& path, const std::string& ending,
+                                    const std::string& text) {
   std::filesystem::path partial = path;
-  partial += ".partial";
+  partial += ending;
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
   if (file) return partial;
-  const std::string why = std::strerror(errno);
-  std::error_code ignored;
-  std::filesystem::remove(partial, ignored);  // what is left of a full disk is needed for other files
-  throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), why));
+  const RunError error = cannot_write(path);
+  remove_if_there(partial);
+  throw error;
 }
 
 // fsync() of a file or a folder; some file systems refuse it for a folder.
@@ -54,24 +64,25 @@ InputError cannot_read(const std::filesystem::path& path) {
 }  // namespace
 
 void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
-  rename_into_place(write_partial(path, text), path);
+  const std::filesystem::path partial = write_partial(path, fmt::format(".partial.{}", ::getpid()), text);
+  if (std::rename(partial.c_str(), path.c_str()) == 0) return;
+  const RunError error = cannot_write(path);
+  remove_if_there(partial);
+  throw error;
 }
 
 void write_text_durably(const std::filesystem::path& path, const std::string& text) {
-  if (!put_on_disk(write_partial(path, text), path))
-    throw RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+  const std::filesystem::path partial = write_partial(path, ".partial", text);
+  if (put_on_disk(partial, path)) return;
+  const RunError error = cannot_write(path);
+  remove_if_there(partial);
+  throw error;
 }
 
 bool put_on_disk(const std::filesystem::path& path) { return sync(path); }
 
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to) {
   return sync(from) && std::rename(from.c_str(), to.c_str()) == 0 && sync(std::filesystem::absolute(to).parent_path());
-}
-
-void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (error) throw RunError(fmt::format("{}: cannot write the file: {}.", to.string(), error.message()));
 }
 
 bool is_left_by_a_kill(const std::filesystem::path& path) {
@@ -151,13 +162,17 @@ void check_readable(const std::filesystem::path& path) {
 }
 
 std::string read_text(const std::filesystem::path& path) {
-  std::error_code ignored;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw cannot_read(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || std::filesystem::is_directory(path, ignored)) throw cannot_read(path);
-  return text.str();
+  const int file = opened(path, O_RDONLY);
+  if (file < 0) throw cannot_read(path);
+  std::string text, piece(std::size_t{1} << 16, '\0');
+  ssize_t length = 0;
+  while ((length = repeated_if_interrupted([&] { return ::read(file, piece.data(), piece.size()); })) > 0)
+    text.append(piece, 0, static_cast<std::size_t>(length));
+  const int error = errno;
+  ::close(file);
+  errno = error;
+  if (length < 0) throw cannot_read(path);
+  return text;
 }
 
 }  // namespace thalweg::io

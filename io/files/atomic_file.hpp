@@ -8,10 +8,11 @@
 
 namespace thalweg::io {
 
-// Writes `text` under a temporary name beside `path` and renames it into place. Throws RunError.
+// Writes `text` under a temporary name beside `path` and renames it into place. Several processes may write one file at
+// once, as the ranks of a failed run do: each under a name of its own. Throws RunError.
 void write_text_atomically(const std::filesystem::path& path, const std::string& text);
 
-// The same, and it outlasts a loss of power once this returns.
+// The same by one process, and it outlasts a loss of power once this returns.
 void write_text_durably(const std::filesystem::path& path, const std::string& text);
 
 // Waits until the data of a file, or the names in a folder, are on the disk. False if that fails.
@@ -21,11 +22,8 @@ bool put_on_disk(const std::filesystem::path& path);
 // fails.
 bool put_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Renames a finished file into place. Throws RunError.
-void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
-
-// True if a kill has left a file of this name: unfinished (NAME.partial), or made beside it by MPI-IO while it opened
-// it (Open MPI's NAME.partial.locktest.0).
+// True if a kill has left a file of this name: unfinished (NAME.partial or NAME.partial.PROCESS), or made beside it
+// by MPI-IO while it opened it (Open MPI's NAME.partial.locktest.0).
 bool is_left_by_a_kill(const std::filesystem::path& path);
 
 // Creates an empty file, or empties one; false if that fails.

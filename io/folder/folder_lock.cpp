@@ -71,7 +71,10 @@ std::string first_line_of(int file) {
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   make_folder(folder);
   file_ = opened(folder / file_name, O_RDWR | O_CREAT);
-  if (file_ < 0) return;  // whoever cannot write there is told so when the run begins to
+  if (file_ < 0) {  // another user's, or the disk is full
+    not_obtained_ = true;
+    return;
+  }
   if (takes_lock(file_)) {
     const std::string name = name_of_this_process();
     if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, name.data(), name.size(), 0) < 0) return;  // only a help
@@ -83,7 +86,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
                     "or choose another folder with --out{}.",
                     folder.string(), holder, shell_word(folder.string()), way_out(holder, folder / file_name)));
   } else {
-    without_locks_ = true;
+    not_obtained_ = true;  // the file system has no locks
   }
 }
 
@@ -100,11 +103,11 @@ std::optional<bool> FolderLock::is_held(const std::filesystem::path& folder) {
 }
 
 FolderLock::FolderLock(FolderLock&& other) noexcept
-    : file_(std::exchange(other.file_, -1)), without_locks_(std::exchange(other.without_locks_, false)) {}
+    : file_(std::exchange(other.file_, -1)), not_obtained_(std::exchange(other.not_obtained_, false)) {}
 
 FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
   std::swap(file_, other.file_);
-  std::swap(without_locks_, other.without_locks_);
+  std::swap(not_obtained_, other.not_obtained_);
   return *this;
 }
 

@@ -16,8 +16,8 @@ public:
   // more, and RunError where the folder cannot be made.
   explicit FolderLock(const std::filesystem::path& folder);
 
-  // False where the file system has no locks, so that nothing keeps others out.
-  bool keeps_others_out() const { return !without_locks_; }
+  // False where a lock was asked for and not obtained: the file cannot be opened, or the file system has no locks.
+  bool keeps_others_out() const { return !not_obtained_; }
 
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;
@@ -31,7 +31,7 @@ public:
 
 private:
   int file_ = -1;
-  bool without_locks_ = false;
+  bool not_obtained_ = false;
 };
 
 }  // namespace thalweg::io

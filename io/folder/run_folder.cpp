@@ -24,20 +24,18 @@ namespace thalweg::io {
 namespace fs = std::filesystem;
 namespace {
 
-// All a run writes, and thalweg analyze; --overwrite removes these and nothing else. A request to stop is taken away
-// with the lock of the folder: one that is there later concerns the run that begins. Records were files in older
-// versions.
-constexpr std::array run_contents{"case.yaml",  "series.csv",   "profiles.h5", "probes",      "tracks",
-                                  "reach",      "entrainment",  "probes.h5",   "tracks.h5",   "entrainment.h5",
-                                  "grains.pvd", "fluid.pvd",    "solids.pvd",  "grains",      "fluid",
-                                  "solids",     "fluid_parts",  "grain_parts", "checkpoints", "bed.h5",
-                                  "run.log",    "summary.json", "analysis"};
-// Entries that a continued run changes in place: folders, and files that are not replaced as a whole.
-constexpr std::array added_to{"checkpoints", "grains",     "fluid",     "solids",    "fluid_parts",
-                              "grain_parts", "run.log",    "probes",    "tracks",    "reach",
-                              "entrainment", "grains.pvd", "fluid.pvd", "solids.pvd"};
+// Folders of records, each with the name of its observer.
+constexpr std::array record_folders{"probes", "tracks", "reach", "entrainment"};
+// Other entries that a continued run changes in place: folders, and files that are not replaced as a whole.
+constexpr std::array added_to{"grains",      "fluid",      "solids",    "fluid_parts", "grain_parts",
+                              "checkpoints", "grains.pvd", "fluid.pvd", "solids.pvd",  "run.log"};
+// Files that are replaced as a whole. Records were files in older versions.
+constexpr std::array replaced{"series.csv",     "profiles.h5", "probes.h5",   "tracks.h5",
+                              "entrainment.h5", "bed.h5",      "summary.json"};
+// What thalweg analyze and thalweg report make of the run.
+constexpr std::array made_of_the_run{"analysis", "report.html"};
+constexpr const char* case_name = "case.yaml";
 constexpr const char* latest_name = "latest";
-constexpr const char* unfinished_case = "case.yaml.partial";
 constexpr const char* kept_case = "case_until_step_";
 
 // The number in the name of a file; none: it is another file.
@@ -60,7 +58,7 @@ std::string why_not_writable(const fs::path& path) {
 
 }  // namespace
 
-std::vector<std::string> RunFolder::names_of_records() { return {"probes", "tracks", "reach", "entrainment"}; }
+std::vector<std::string> RunFolder::names_of_records() { return {record_folders.begin(), record_folders.end()}; }
 
 bool RunFolder::is_run_folder() const {
   std::error_code ignored;
@@ -75,8 +73,8 @@ void RunFolder::check_new(bool overwrite) const {
         fmt::format("{}: there is a file of this name; choose another folder with --out.", path_.string()));
   const std::vector<fs::path> entries = entries_of(path_);
   const bool has_something = std::any_of(entries.begin(), entries.end(), [](const fs::path& entry) {
-    // Files of a run that was killed at once.
-    return entry.filename() != unfinished_case && entry.filename() != FolderLock::file_name;
+    // Files of a run that was killed at once, or before it had removed an old one.
+    return !is_left_by_a_kill(entry) && entry.filename() != FolderLock::file_name;
   });
   if (!has_something) return;
   if (!is_run_folder())
@@ -99,7 +97,9 @@ void RunFolder::check_writable() const {
     throw InputError(fmt::format("{}: cannot {} the folder: {}; choose another one with --out.", path_.string(),
                                  fs::exists(path_, ignored) ? "write to" : "create",
                                  why.empty() ? std::strerror(ENOTDIR) : why));
-  for (const char* name : added_to) {
+  std::vector<std::string> changed = names_of_records();
+  changed.insert(changed.end(), added_to.begin(), added_to.end());
+  for (const std::string& name : changed) {
     const std::string why = fs::exists(path_ / name, ignored) ? why_not_writable(path_ / name) : "";
     if (!why.empty())
       throw InputError(fmt::format("{}: cannot write to it: {}; change that or choose another folder with --out.",
@@ -112,10 +112,19 @@ void RunFolder::create(bool overwrite) const {
   make_folder(path_);
   std::vector<fs::path> old;
   for (const fs::path& entry : entries_of(path_))
-    if (entry.filename().string().starts_with(kept_case)) old.push_back(entry);
-  // case.yaml, by which the folder is known, goes last, and what would show that there have been checkpoints before
-  // them: an interrupted removal can be taken up again.
-  for (auto name = run_contents.rbegin(); name != run_contents.rend(); ++name) old.push_back(path_ / *name);
+    if (entry.filename().string().starts_with(kept_case) || is_left_by_a_kill(entry)) old.push_back(entry);
+  // What would show that there have been checkpoints goes before them, and case.yaml, by which the folder is known,
+  // last: an interrupted removal can be taken up again. A request to stop is taken away with the lock of the folder:
+  // one that is there later concerns the run that begins.
+  const auto add = [&](const auto& names) {
+    for (const char* name : names) old.push_back(path_ / name);
+  };
+  add(made_of_the_run);
+  add(replaced);
+  old.push_back(log());
+  add(record_folders);
+  add(added_to);
+  old.push_back(path_ / case_name);
   for (const fs::path& path : old) remove_entry(path);
 }
 
@@ -186,9 +195,7 @@ void RunFolder::rotate_checkpoints(std::int64_t step, int keep) const {
   for (const fs::path& entry : entries_of(path_)) {
     const std::string name = entry.filename().string();
     const auto until = step_between(name, kept_case, ".yaml");
-    const bool unfinished = is_left_by_a_kill(name) && (name.starts_with(profiles().filename().string()) ||
-                                                        name.starts_with(bed().filename().string()));
-    if (unfinished || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry);
+    if (is_left_by_a_kill(name) || (until && (*until > step || (*until == step && anew)))) superfluous.push_back(entry);
   }
   for (const fs::path& file : superfluous) remove_entry(file);
 }

@@ -60,6 +60,8 @@ public:
   void close();  // writes what is left and gives the file its name
 
 private:
+  void give_up();  // not collective: throws the unfinished file away without closing it
+
   struct File;
   std::unique_ptr<File> file_;
 };

@@ -33,9 +33,10 @@ struct Hdf5Reader::File {
     if (!alone()) MPI_Bcast(&is_hdf5, 1, MPI_INT, 0, communicator);
     const Handle access = alone() ? lone_access() : mpi_access(communicator, path);
     if (is_hdf5 != 0) file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
-    if (any(!file.good()))
-      throw DamagedFile(fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.",
-                                    path.string()));
+    if (!any(!file.good())) return;
+    file.release();  // another rank has nothing to close with it
+    throw DamagedFile(
+        fmt::format("{}: this is not an HDF5 file or it is damaged; give one that a run has written.", path.string()));
   }
 
   InputError error(const std::string& name, const std::string& what) const {

@@ -116,13 +116,21 @@ Hdf5Writer::Hdf5Writer(MPI_Comm communicator, const std::filesystem::path& path)
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation, false);
   file_->file = Handle(H5Fcreate(file_->partial.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
-  file_->agree(file_->file.good());
+  try {
+    file_->agree(file_->file.good());
+  } catch (...) {
+    give_up();  // no destructor does
+    throw;
+  }
 }
 
 // A file that is given up is never closed: closing is collective, and another rank's exception may be on its way; and
 // HDF5 cannot recover from a close that fails, as on a full disk.
 Hdf5Writer::~Hdf5Writer() {
-  if (!file_->file.good()) return;
+  if (file_->file.good()) give_up();
+}
+
+void Hdf5Writer::give_up() {
   file_->file.release();
   if (rank_of(file_->communicator) != 0) return;
   std::error_code ignored;

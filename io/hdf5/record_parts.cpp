@@ -145,7 +145,7 @@ void RecordParts::check(const Records& records) const {
 void RecordParts::begin(const Records& records, std::int64_t step) {
   on_first_rank(communicator_, [&] {
     keep(records);
-    if (continue_from_) drop_parts_after(folder_, *continue_from_);
+    drop_parts_after(folder_, continue_from_.value_or(-1));
     if (!continue_from_ || last_part(folder_, *continue_from_).empty()) write_part(step);
   });
 }

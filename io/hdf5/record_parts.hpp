@@ -34,7 +34,8 @@ public:
   // have no rows yet.
   void check(const Records& records) const;
 
-  // Drops the parts after continue_from; where none is left, writes a first one. The first of the calls that write.
+  // Drops the parts after continue_from, or all; where none is left, writes a first one. The first of the calls that
+  // write.
   void begin(const Records& records, std::int64_t step);
 
   // Keeps new rows and events, up to this step, until there is a part's worth of them. Only rank 0's are used.

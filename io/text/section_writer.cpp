@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::size_t comment_column = 44, last_column = 110;
 
+}  // namespace
+
 std::string yaml_text(const std::string& text) {
   std::string result = "\"";
   for (std::string_view rest = text; !rest.empty(); rest.remove_prefix(1)) {
@@ -30,6 +32,8 @@ std::string yaml_text(const std::string& text) {
   }
   return result + "\"";
 }
+
+namespace {
 
 std::string bracketed(const Vec3& value) {
   return fmt::format("[{}, {}, {}]", shortest(value[0]), shortest(value[1]), shortest(value[2]));

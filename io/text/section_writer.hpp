@@ -102,6 +102,9 @@ std::string written(Section value, YamlStyle style) {
   return writer.yaml();
 }
 
+// A text in quotation marks, with escapes, as any place in YAML takes it.
+std::string yaml_text(const std::string& text);
+
 // A number with as few digits as read back to the same bits.
 std::string shortest(double value);
 

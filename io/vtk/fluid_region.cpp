@@ -81,12 +81,7 @@ void check(const FluidRegionKeys& keys, const Vec3& box_size, double spacing) {
                                              box_size[axis]));
   }
   if (!keys.box) return;
-  const Vec3 &lower = keys.box->lower, &upper = keys.box->upper;
-  if ((lower.array() < 0.0).any() || !lies_in_box(upper, box_size))
-    throw KeyError("box",
-                   fmt::format("the box reaches out of the domain; give corners in m between [0, 0, 0] and [{:g}, "
-                               "{:g}, {:g}]",
-                               box_size[0], box_size[1], box_size[2]));
+  check_in_domain(*keys.box, box_size);
   Index3 cells;
   for (int axis = 0; axis < 3; ++axis) cells[axis] = static_cast<int>(std::lround(box_size[axis] / spacing));
   for (const int n : block_of(keys, cells, spacing).size())

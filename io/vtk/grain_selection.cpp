@@ -22,12 +22,7 @@ namespace {
 
 void check_shown_box(const BoxKeys& box, const Vec3& domain_size) {
   const Vec3 &lower = box.lower, &upper = box.upper;
-  constexpr double rounding = 1e-9;  // of the domain
-  if ((lower.array() < 0.0).any() || !(upper.array() <= (1.0 + rounding) * domain_size.array()).all())
-    throw KeyError("box",
-                   fmt::format("the box reaches out of the domain; give corners in m between [0, 0, 0] and [{:g}, "
-                               "{:g}, {:g}]",
-                               domain_size[0], domain_size[1], domain_size[2]));
+  check_in_domain(box, domain_size);
   if (!(lower.array() < upper.array()).all())
     throw KeyError("box", "the box has no volume; give an upper corner in m above the lower one along every axis");
 }

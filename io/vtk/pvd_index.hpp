@@ -1,8 +1,8 @@
 // ParaView's list of the frames of a series with their times: a .pvd file.
 //
 // A new frame is appended in one write, in place of the file's last two lines; a kill within that write can leave the
-// end of the list unreadable until the run goes on, never an entry before it. A restart makes the list from the frames
-// themselves, each of which holds its time (io/vtk/vtk_xml_file.hpp), where it is missing, damaged or incomplete.
+// end of the list unreadable until the run goes on, never an entry before it. A restart adds what the list lacks from
+// the frames themselves, each of which holds its time (io/vtk/vtk_xml_file.hpp).
 #pragma once
 
 #include <mpi.h>

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -24,7 +27,7 @@ TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
     try {
       on_first_rank(world, [&] {
         if (input) throw InputError("no such folder");
-        throw std::runtime_error("disk full");
+        throw RunError("disk full");
       });
     } catch (const InputError& error) {
       message = std::string("input: ") + error.what();
@@ -33,6 +36,19 @@ TEST(OnFirstRank, WorksOnceAndTellsEveryRankOfItsErrors) {
     }
     EXPECT_EQ(message, input ? "input: no such folder" : "run: disk full");
   }
+}
+
+TEST(OnFirstRank, TellsOfAnyErrorInASentence) {
+  const auto told = [](const std::function<void()>& work) -> std::string {
+    try {
+      on_first_rank(world, work);
+    } catch (const RunError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(told([] { throw std::bad_alloc(); }), "The memory of this machine is not enough for the case.");
+  EXPECT_EQ(told([] { throw std::out_of_range("at"); }), "Unexpected error: at.");
 }
 
 TEST(OnFirstRank, TellsTheOthersWhatItHasFound) {

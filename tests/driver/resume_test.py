@@ -117,6 +117,9 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
         self.resume("--until", "0.01")
         self.assert_refused("run", self.case, "--out", "run", "--resume", "--set", "grains.0.density=2650",
                             words=["grains.0.density"])
+        # The run is finished at 0.01 s, which is no answer to an end that is no number.
+        self.assert_refused("run", self.case, "--out", "run", "--resume", "--set", "run.until=0.01abc",
+                            words=["run.until"])
 
     def test_the_folder_beside_the_case(self):
         self.run_well("run", self.case, "--resume", "--until", "0.005")

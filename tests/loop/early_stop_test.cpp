@@ -98,7 +98,7 @@ TEST(EarlyStop, ARequestToStopCountsMoreThanASignal) {
 }
 
 // Open MPI's mpirun kills by SIGCONT, SIGTERM and SIGKILL; the first of them saves.
-class SignalsOfMpirun : public testing::Test {
+class SignalsOfMpirun : public ::testing::Test {
 protected:
   SignalsOfMpirun() {
     setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank_of(world)).c_str(), 1);  // also without mpirun
@@ -152,7 +152,7 @@ TEST_F(SignalsOfMpirun, WithoutASecondTheRunGoesOn) {
 
 TEST_F(SignalsOfMpirun, ACheckpointThatWouldComeTooLateIsToldOf) {
   for (const double between : {0.001, 100.0}) {
-    const std::string path = testing::TempDir() + "sigcont_" + std::to_string(getpid()) + ".log";
+    const std::string path = ::testing::TempDir() + "sigcont_" + std::to_string(getpid()) + ".log";
     Bench bench(0.010);
     bench.log = Log(true);
     bench.log.copy_to(path);

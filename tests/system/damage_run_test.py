@@ -110,6 +110,23 @@ output: {series: {every: 0.01}, checkpoint: {every: 0.05, keep: 2}}
         self.assertIn("at 0.05 s", said)
         self.assert_same_bed("whole", folder.name)
 
+    def test_means_of_another_interval_begin_at_the_older_one(self):
+        def measured(every):
+            return ["--set", f"analysis={{bed_surface: {{every: {every}}}, grain_profiles: {{every: 0.001}}}}"]
+        folder = self.folder / "measured"
+        self.run_well("run", self.case, "--out", folder, "--until", "0.05", *measured(0.02))
+        shutil.copytree(folder, self.folder / "straight")
+        self.run_well("run", self.case, "--out", "straight", "--restart", "straight", *measured(0.01))
+        self.run_well("run", self.case, "--out", folder, "--restart", folder, "--until", "0.1", *measured(0.01),
+                      "--set", "contact.friction=0.05")   # so that the course that is left is another one
+        exchanged("grain_profiles/sums")(self.last_checkpoint(folder))   # read after the sums of the surface
+        said = self.run_well("run", self.case, "--out", folder, "--restart", folder, *measured(0.01)).stdout
+        self.assertIn("at 0.05 s", said)
+        known, straight = self.summary(folder), self.summary("straight")
+        self.assertEqual(known["bed_surface"]["measurements"], 15)
+        for section in ("bed_surface", "grain_profiles"):
+            self.assertEqual(known[section], straight[section])
+
     def test_a_damaged_name_costs_nothing(self):
         for name, damage in self.NAMES.items():
             with self.subTest(damage=name):

@@ -81,11 +81,11 @@ class FileSystem(ProgramTest):
         self.assert_same_end("run", "alone")
 
     def test_without_locks_the_log_says_so_once(self):
-        words = "the file system of run has no locks: make sure that no other run writes there"
+        words = "run cannot be locked: make sure that no other run writes there"
         self.run_well_there("run", self.case, "--out", "run", ranks=2, WITHOUT_LOCKS="1")
         self.assertEqual((self.folder / "run/run.log").read_text().count(words), 1)
         self.run_well("run", self.case, "--out", "with")
-        self.assertNotIn("locks", (self.folder / "with/run.log").read_text())
+        self.assertNotIn("locked", (self.folder / "with/run.log").read_text())
 
 
 if __name__ == "__main__":

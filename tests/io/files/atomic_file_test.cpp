@@ -1,5 +1,6 @@
-// Room on the disk for a file, while signals arrive; folders that cannot be listed.
+// Room on the disk for a file, while signals arrive; files and folders that cannot be read.
 #include "io/files/atomic_file.hpp"
+#include "core/base/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <string>
+#include <vector>
 
 static int interruptions = 0;
 
@@ -41,6 +44,32 @@ TEST(AtomicFile, AFolderThatCannotBeListedIsNotAnEmptyOne) {
   EXPECT_TRUE(entries_of(folder / "missing").empty());
   testing::put(folder / "file", "no folder");
   EXPECT_THROW(entries_of(folder / "file"), RunError);
+}
+
+TEST(AtomicFile, AFileThatCannotBeReadIsNotAnEmptyOne) {
+  const testing::ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  const std::string long_text(200000, 'a');
+  testing::put(folder / "file", long_text);
+  testing::put(folder / "empty", "");
+  EXPECT_EQ(read_text(folder / "file"), long_text);
+  EXPECT_EQ(read_text(folder / "empty"), "");
+  EXPECT_THROW(read_text(folder / "missing"), InputError);
+  EXPECT_THROW(read_text(folder.path()), InputError);
+  EXPECT_THROW(read_text("/proc/self/mem"), InputError);  // its first read fails, as of a bad disk
+}
+
+TEST(AtomicFile, NothingIsLeftOfATextThatCannotBeWritten) {
+  const testing::ScratchFolder folder;
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  make_folder(folder / "taken");
+  EXPECT_THROW(write_text_atomically(folder / "taken", "text"), RunError);
+  EXPECT_THROW(write_text_durably(folder / "taken", "text"), RunError);
+  EXPECT_EQ(entries_of(folder.path()), std::vector<std::filesystem::path>{folder / "taken"});
+  write_text_atomically(folder / "text", "text");
+  write_text_durably(folder / "text", "another");
+  EXPECT_EQ(testing::contents(folder / "text"), "another");
+  EXPECT_EQ(entries_of(folder.path()).size(), 2u);
 }
 
 TEST(AtomicFile, WhatIsRemovedIsGoneOrTheReasonIsSaid) {

@@ -95,8 +95,18 @@ TEST_F(RunFolderTest, AnEmptyOrMissingFolderIsFine) {
   RunFolder(path / "deep").create(false);
   EXPECT_TRUE(fs::is_directory(path / "deep"));
   RunFolder(path / "deep").create(false);
-  put(path / "deep/case.yaml.partial", "# Thal");  // of a run that was killed at once
+  // Of a run that was killed at once, and of one that replaced another and was killed before its own case was there.
+  for (const char* name : {"case.yaml.partial", "bed.h5.partial", "summary.json.partial.123"})
+    put(path / "deep" / name, "# Thal");
   RunFolder(path / "deep").create(false);
+  EXPECT_TRUE(fs::is_empty(path / "deep"));
+}
+
+TEST_F(RunFolderTest, ALockThatCannotBeObtainedKeepsNobodyOut) {
+  const fs::path path = scratch("unlocked");
+  fs::create_directories(path / FolderLock::file_name);  // nobody can open it as a file
+  EXPECT_FALSE(FolderLock(path).keeps_others_out());
+  EXPECT_TRUE(FolderLock(scratch("locked")).keeps_others_out());
 }
 
 TEST_F(RunFolderTest, TheCaseBeginsWithItsMarkerAndComments) {

@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <hdf5.h>
+
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <semaphore.h>
 #include <sys/resource.h>
@@ -14,6 +17,23 @@
 #include <csignal>
 #include <string>
 #include <thread>
+
+// Whether this rank fails to open the next files.
+static bool fails_to_open = false;
+
+// HDF5's own functions, but for a rank that fails: it takes part, since the call is collective, and has no file then.
+template <typename... Arguments>
+static hid_t opened_by_hdf5(const char* function, Arguments... arguments) {
+  const auto own = reinterpret_cast<hid_t (*)(Arguments...)>(::dlsym(RTLD_NEXT, function));
+  const hid_t file = own(arguments...);
+  return fails_to_open ? H5I_INVALID_HID : file;
+}
+extern "C" hid_t H5Fopen(const char* name, unsigned flags, hid_t access) {
+  return opened_by_hdf5("H5Fopen", name, flags, access);
+}
+extern "C" hid_t H5Fcreate(const char* name, unsigned flags, hid_t creation, hid_t access) {
+  return opened_by_hdf5("H5Fcreate", name, flags, creation, access);
+}
 
 namespace thalweg::io::hdf5_archive_test {
 namespace {
@@ -265,6 +285,20 @@ TEST(Hdf5Archive, AMissingFolderIsARunError) {
   const ScratchFolder folder;
   const auto path = folder / "missing/state.h5";
   EXPECT_EQ(message_of<RunError>([&] { Hdf5Writer(MPI_COMM_WORLD, path); }).find(path.string() + ": cannot write"), 0u);
+}
+
+// To close a file is collective: ranks that have opened it must not wait for the one that has not.
+TEST(Hdf5Archive, AFileThatOneRankCannotOpenIsRefusedByAll) {
+  const ScratchFolder folder;
+  write_all(MPI_COMM_WORLD, folder / "state.h5");
+  fails_to_open = rank_of(MPI_COMM_WORLD) == size_of(MPI_COMM_WORLD) - 1;
+  EXPECT_THROW(Hdf5Reader(MPI_COMM_WORLD, folder / "state.h5"), DamagedFile);
+  EXPECT_THROW(Hdf5Writer(MPI_COMM_WORLD, folder / "other.h5"), RunError);
+  fails_to_open = false;
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_FALSE(std::filesystem::exists(folder / "other.h5.partial"));
+  Hdf5Reader reader(MPI_COMM_WORLD, folder / "state.h5");
+  expect_what_was_written(reader);
 }
 
 // A file may grow to 40 kB, as on a disk with that much room left; the room comes back when the writer has given up.

@@ -128,6 +128,16 @@ TEST(RecordParts, AreDroppedByARestartWhereTheyAreLater) {
   EXPECT_EQ(parts_in(folder / "tracks"), to_nine);
 }
 
+TEST(RecordParts, OfANewRunAreNotMixedWithThoseOfAnother) {
+  const ScratchFolder folder;
+  record_to_nine(folder / "tracks");
+  {
+    RecordParts anew(MPI_COMM_WORLD, folder / "tracks", std::nullopt);
+    anew.begin(seconds(0, 0), 0);
+  }
+  EXPECT_EQ(parts_in(folder / "tracks"), Parts(to_nine.begin(), to_nine.begin() + 1));
+}
+
 // Rows that are many, or of a run that ends by an error, do not wait for a checkpoint.
 TEST(RecordParts, AreWrittenBeforeTheCheckpointToo) {
   const ScratchFolder folder;

@@ -64,6 +64,8 @@ NamedGrainOutputKeys part_of(const GrainSelectionKeys& selection, const std::vec
 
 TEST(GrainSelection, WhatThereIsNotIsRefused) {
   EXPECT_EQ(refusal(part_of({{0, 24}, 2, BoxKeys{{0.0, 0.0, 0.0}, domain}})), "");
+  // A domain of whole cells may be shorter than the case says by the tolerance of these.
+  EXPECT_EQ(refusal(part_of({{}, {}, BoxKeys{{0.0, 0.0, 0.0}, (1.0 + 0.5 * whole_number_tolerance) * domain}})), "");
   EXPECT_EQ(refusal(part_of({{0, 25}, {}, {}})), "grain_parts.1.ids.1: there is no such grain; give ids from 0 to 24");
   EXPECT_EQ(refusal(part_of({{4, 1, 4}, {}, {}})), "grain_parts.1.ids.2: the id is given twice; remove one of the two");
   EXPECT_EQ(refusal(part_of({{}, 3, {}})), "grain_parts.1.population: there is no such population; give one of 0 to 2");

@@ -1,4 +1,4 @@
-#include "driver/cli/error_message.hpp"
+#include "core/base/error_message.hpp"
 
 #include "core/base/error.hpp"
 
@@ -6,7 +6,7 @@
 
 #include <new>
 
-namespace thalweg::driver {
+namespace thalweg {
 
 std::string error_message(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
@@ -16,4 +16,4 @@ std::string error_message(const std::exception& error) {
   return is_a_sentence ? error.what() : fmt::format("Unexpected error: {}.", error.what());
 }
 
-}  // namespace thalweg::driver
+}  // namespace thalweg
