@@ -283,8 +283,10 @@ std::int64_t GrainDynamics::moving_count(double speed) const {
   return sum_over_ranks(communicator_, count);
 }
 
+std::int64_t GrainDynamics::free_count() const { return moving_count(-1.0); }
+
 double GrainDynamics::moving_share(double speed) const {
-  const std::int64_t moving = moving_count(speed), free = moving_count(-1.0);
+  const std::int64_t moving = moving_count(speed), free = free_count();
   return free > 0 ? static_cast<double>(moving) / static_cast<double>(free) : 0.0;
 }
 

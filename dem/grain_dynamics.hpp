@@ -213,7 +213,8 @@ public:
   double largest_free_speed() const;              // m/s, of grains that are free to move
   double largest_acceleration() const;            // m/s^2, of the same, by all forces at the end of the last step
   std::int64_t moving_count(double speed) const;  // free grains faster than speed (m/s)
-  double moving_share(double speed) const;        // share of the free grains; 0 if there are none
+  std::int64_t free_count() const;
+  double moving_share(double speed) const;  // share of the free grains; 0 if there are none
   // Free grains that are not slower than speed (m/s), or not accelerated by less than this (m/s^2).
   std::int64_t restless_count(double speed, double acceleration) const;
 

@@ -93,9 +93,12 @@ std::vector<Diagnostic> GrainSystem::diagnostics() const {
                                       {"largest_overlap", "diameter", grains_.largest_overlap()},
                                       {largest_speed_diagnostic, "m/s", grains_.largest_free_speed()},
                                       {largest_acceleration_diagnostic, "m/s^2", grains_.largest_acceleration()}};
-  if (rest_)
-    diagnostics.push_back(
-        {restless_diagnostic, "1", static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration))});
+  if (rest_) {
+    const auto restless = static_cast<double>(grains_.restless_count(rest_->speed, rest_->acceleration));
+    const auto free = static_cast<double>(std::max<std::int64_t>(1, grains_.free_count()));
+    diagnostics.push_back({restless_diagnostic, "1", restless});
+    diagnostics.push_back({restless_share_diagnostic, "1", restless / free});
+  }
   if (field_)
     for (const Diagnostic& diagnostic : field_->diagnostics(time())) diagnostics.push_back(diagnostic);
   for (const Diagnostic& diagnostic : grains_.turnover_diagnostics()) diagnostics.push_back(diagnostic);

@@ -44,14 +44,15 @@ public:
   double time_step() const override { return time_step_; }
   Snapshot snapshot() const override;
   // Those of GrainDynamics::turnover_diagnostics(), and contacts (1), largest_overlap (diameters), of the free grains
-  // largest_grain_speed (m/s), largest_grain_acceleration (m/s^2), with RestBounds restless_grains (1), those of the
-  // field, and three for each measured wall and each solid (N): wall_force_bottom_x ..., wall_force_wall_0_x ...,
-  // solid_0_grain_force_x ...
+  // largest_grain_speed (m/s), largest_grain_acceleration (m/s^2), with RestBounds restless_grains (1) and
+  // restless_share (1: of the free grains), those of the field, and three for each measured wall and each solid (N):
+  // wall_force_bottom_x ..., wall_force_wall_0_x ..., solid_0_grain_force_x ...
   std::vector<Diagnostic> diagnostics() const override;
   std::optional<Location> location_of(const std::string& diagnostic) const override;
   static constexpr const char* largest_speed_diagnostic = "largest_grain_speed";
   static constexpr const char* largest_acceleration_diagnostic = "largest_grain_acceleration";
   static constexpr const char* restless_diagnostic = "restless_grains";
+  static constexpr const char* restless_share_diagnostic = "restless_share";
   void save(ArchiveWriter& archive) const override;
   void load(ArchiveReader& archive) override;
   void import_grains(ArchiveReader& archive, double spacing) override;

@@ -4,9 +4,9 @@
 //   phi(z)   = [C(z + b/2) - C(z - b/2)] / [R(z + b/2) - R(z - b/2)]
 //   phi_bulk = (C_50 - C_10) / [R(z_50) - R(z_10)]       z_n: height below which n % of all grains' volume lies
 //
-// C(z): volume of grains below z, exact. R(z) = A z - O(z): room for them, with the plan A of the box and the volume O
-// of obstacles below z (union_of_spheres.hpp, core/geometry/mesh_volume.hpp), such as a sill or a pier, which are no
-// grains of the bed.
+// C(z): volume of grains below z and above the floor, exact. R(z) = A z - O(z): room for them, with the plan A of the
+// box and the volume O of obstacles below z (union_of_spheres.hpp, core/geometry/mesh_volume.hpp), such as a sill or a
+// pier, which are no grains of the bed.
 //
 // The bulk is thus the lower half of the grains without the layers at the floor. A block of uniform solid fraction with
 // a flat top has its height exactly. Near floor and top phi is the mean over the part of the layer inside the box.

@@ -110,7 +110,7 @@ std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
   return below;
 }
 
-// The volume of each grain in each layer.
+// The volume of each grain in each layer, inside the box.
 void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
                              const std::vector<char>& floating, const TermTaker& take) const {
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
@@ -120,10 +120,8 @@ void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, d
     const int first = static_cast<int>(std::floor(foot / thickness_));
     const int last = static_cast<int>(std::floor((foot + 2.0 * radius) / thickness_));
     for (int layer = std::max(0, first); layer <= std::min(layers_ - 1, last); ++layer) {
-      // The part of a grain beyond a wall belongs to the layer at the wall, so that no volume is lost.
-      const double lower = layer == 0 ? 0.0 : layer * thickness_ - foot;
-      const double upper = layer == layers_ - 1 ? 2.0 * radius : (layer + 1) * thickness_ - foot;
-      const double volume = share * volume_between(radius, grains.disk_thickness, lower, upper);
+      const double lower = layer * thickness_ - foot;
+      const double volume = share * volume_between(radius, grains.disk_thickness, lower, lower + thickness_);
       take(layer, {&volume, 1});
     }
   }

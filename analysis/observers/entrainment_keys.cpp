@@ -38,7 +38,8 @@ void describe(SectionVisitor& visit, EntrainmentKeys& keys) {
   visit.real(
       "rest_time", keys.rest_time,
       {.unit = "s",
-       .meaning = "a grain is at rest after it has been slower than the moving speed of transport_rate for this long",
+       .meaning =
+           "a grain is at rest after it has been slower than the default moving speed of transport_rate for this long",
        .at_least = 0.0});
 }
 

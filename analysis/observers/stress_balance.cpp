@@ -138,24 +138,29 @@ void StressBalance::give_parts(const Snapshot& snapshot, const BalancedBodies& b
                                                       : scales_.body_force(body.mass, body.radius).x() +
                                                             body.volume * snapshot.momentum->driving_of_grains.x();
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
-      const double from = layers_.bottom(layer) - lowest, to = from + layers_.height(layer);
+      const double from = layers_.bottom(layer) - lowest, height = layers_.height(layer), to = from + height;
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * body.mass;
-      const double lever = (sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part) / whole;
+      const double moment = sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part;
+      // Forces act inside the box, so that what a held grain has above the top acts there.
+      const double above = layer + 1 == layers_.count() ? volume_between(radius, 0.0, to, 2.0 * radius) : 0.0;
+      const double acting = (part + above) / whole, lever = (moment + above * height) / whole;
       std::array<double, grain_columns> row{grains.is_member(i) ? share * body.volume : part, m, m * v[0], m * v[1],
                                             m * v[2]};
       double* term = row.data() + momentum_flux;
       for (const auto& [a, b] : symmetric_pairs) *term++ = m * v[a] * v[b];
       for (const Mat3* moment : {&body.contacts, &body.of_fluid, &body.lubrication})
         for (int k = 0; k < 9; ++k) *term++ = share * (*moment)(k / 3, k % 3);
-      for (const double value : {share * by_fluid[0], share * by_fluid[1], share * by_fluid[2], share * by_contacts[0],
-                                 share * outer, lever * by_fluid[0], lever * by_contacts[0], lever * outer})
+      for (const double value :
+           {acting * by_fluid[0], acting * by_fluid[1], acting * by_fluid[2], acting * by_contacts[0], acting * outer,
+            lever * by_fluid[0], lever * by_contacts[0], lever * outer})
         *term++ = value;
       take(layer, row);
     }
   }
 }
 
-// Walls by the height at which they act, of which the floor's is 0; the top has a row of its own after the layers.
+// Walls by the height at which they act, of which the floor's is 0; the top, to which a held grain may also be on the
+// outside, has a row of its own after the layers.
 void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
   const GrainView& grains = snapshot.grains;
   if (grains.global_count == 0) return;
@@ -164,7 +169,8 @@ void StressBalance::add_grains_at_walls(const Snapshot& snapshot) {
     snapshot.contacts->for_each_wall_force([&](std::size_t grain, const ContactEnd& end) {
       const Vec3& towards = end.to_partner;
       const double height = std::clamp(grains.position[grain].z() + end.arm.z(), 0.0, top);
-      const bool of_top = towards.z() > std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
+      const bool of_top =
+          std::abs(towards.z()) >= std::hypot(towards.x(), towards.y()) && height > top - 1e-6 * spacing_;
       const int layer = layers_.at(height);
       take(of_top ? layers_.count() : layer,
            std::array{end.force.x(), end.force.x() * (height - layers_.bottom(layer))});

@@ -98,8 +98,8 @@ public:
 private:
   // Columns of a plane of cells: PlaneMomentum.
   enum FluidColumn { cells, density = 1, flow = 2, flow_flux = 5, viscous = 11, subgrid = 17, fluid_columns = 23 };
-  // Columns of a layer of grains (SI): sums over the parts; levers are parts times their height over the layer's
-  // bottom.
+  // Columns of a layer of grains (SI): sums over the parts inside the box; of forces and levers the top layer has what
+  // lies above it, too. Levers are parts times their height over the layer's bottom.
   enum GrainColumn {
     volume,
     mass = 1,

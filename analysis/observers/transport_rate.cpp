@@ -13,9 +13,10 @@ namespace thalweg::analysis {
 
 namespace {
 
-// Range of velocities in fall speeds: water over a bed of sand or gravel seldom carries a grain faster than ten.
-constexpr double slowest = -5.0, fastest = 15.0;
-constexpr int velocity_bins = 200;
+// Range of velocities in fall speeds, in either direction: water over a bed of sand or gravel seldom carries a grain
+// faster than ten.
+constexpr double slowest = -15.0, fastest = 15.0;
+constexpr int velocity_bins = 300;
 
 }  // namespace
 

@@ -204,7 +204,7 @@ std::vector<Diagnostic> FractionalTransport::diagnostics() const {
 
 std::vector<Diagnostic> FractionalTransport::results() const {
   const Findings found = findings();
-  const double bed = bed_d50(), surface = surface_d50_.mean(), error = surface_d50_.error().of_mean;
+  const double bed = bed_d50(), surface = surface_d50(), error = surface_d50_.error().of_mean;
   std::vector<Diagnostic> results{
       {"bed_d50", "m", bed},
       {"surface_d50_mean", "m", surface},
@@ -239,10 +239,14 @@ std::vector<Diagnostic> FractionalTransport::results() const {
 std::vector<std::string> FractionalTransport::remarks() const {
   if (measurements() == 0) return {};
   const double bed = bed_d50(), load = load_d50();
+  if (!(bed > 0.0)) return {"sizes: there is no bed of free grains"};
+  const std::string of_load =
+      load > 0.0 ? fmt::format("{:.4g} m", load) : "unknown, as the net transport is not downstream";
+  if (surface_d50_.count() == 0)
+    return {
+        fmt::format("sizes: d50 of the bed {:.4g} m, of the load {}; no free grain is at its surface", bed, of_load)};
   return {fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}", bed,
-                      with_error(surface_d50_, 1.0),
-                      load > 0.0 ? fmt::format("{:.4g} m", load) : "unknown, as the net transport is not downstream",
-                      with_error(surface_d50_, bed))};
+                      with_error(surface_d50_, 1.0), of_load, with_error(surface_d50_, bed))};
 }
 
 std::vector<Profile> FractionalTransport::profiles() const {
@@ -250,7 +254,7 @@ std::vector<Profile> FractionalTransport::profiles() const {
   const std::uint64_t classes = classes_.count();
   std::vector<Profile> profiles{
       {"edges", "m", {"edges"}, {}, {classes + 1}, classes_.edges()},
-      {"d50", "m", {}, {"bed", "surface", "load"}, {3}, {bed_d50(), surface_d50_.mean(), load_d50()}}};
+      {"d50", "m", {}, {"bed", "surface", "load"}, {3}, {bed_d50(), surface_d50(), load_d50()}}};
   const auto add = [&](const char* name, const char* unit, const std::vector<double>& values) {
     profiles.push_back({name, unit, {"diameter"}, {}, {classes}, values});
   };

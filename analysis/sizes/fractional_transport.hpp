@@ -99,7 +99,9 @@ private:
   std::vector<Grain> sort_grains(const GrainView& grains, std::vector<SeenSphere>& seen) const;
   void measure_transport(const std::vector<Grain>& grains);
   void measure_surface(const std::vector<SeenSphere>& seen);
-  double bed_d50() const;   // m
+  double bed_d50() const;  // m
+  // m, the mean; not a number where no free grain was seen at the surface
+  double surface_d50() const { return surface_d50_.count() > 0 ? surface_d50_.mean() : std::nan(""); }
   double load_d50() const;  // m
   // Pointers to what is saved; the latest measurement too, as a row of the series may come before the next.
   static auto sums_of(auto& self) {

@@ -43,8 +43,9 @@ std::optional<Hinge> hinge_of(const GrainRing& ring, std::size_t onset, const Ve
   while (at_start.size() < 2 && start > 0) at_start = loaded_touches(ring[--start]);
   if (at_start.size() < 2) return std::nullopt;
   std::vector<Touch> touches = still_loaded(ring, start, at_start);
+  const double along = way.x() < 0.0 ? -1.0 : 1.0;
   std::stable_sort(touches.begin(), touches.end(),
-                   [](const Touch& a, const Touch& b) { return a.point().x() > b.point().x(); });
+                   [along](const Touch& a, const Touch& b) { return along * a.point().x() > along * b.point().x(); });
   const Vec3 centre = ring[start][GrainRecord::position];
   Hinge hinge{{touches[0].partner, touches[1].partner},
               {centre + touches[0].point(), centre + touches[1].point()},

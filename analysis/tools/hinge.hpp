@@ -32,8 +32,8 @@ struct Hinge {
 };
 
 // Hinge of the contacts loaded at the onset (or at the latest sample before with two of them) that are still loaded in
-// the latest sample in which two are; of more than two the ones furthest downstream, along x. way: m, from the rest
-// place to the latest position. None if the grain never had two loaded contacts.
+// the latest sample in which two are; of more than two the ones furthest along x in the direction in which the grain
+// went. way: m, from the rest place to the latest position. None if the grain never had two loaded contacts.
 std::optional<Hinge> hinge_of(const GrainRing& ring, std::size_t onset, const Vec3& way);
 
 struct HingeTorques {

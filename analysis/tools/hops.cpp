@@ -90,7 +90,7 @@ void Hops::take_in(const std::vector<double>& ended) {
   const std::size_t cells = lengths_.counts().size();
   std::vector<std::int64_t> counts(2 * cells, 0);
   for (std::size_t n = 0; n < ended.size(); n += 2) {
-    ++counts[lengths_.bin_of(ended[n])];
+    ++counts[lengths_.bin_of(std::abs(ended[n]))];
     ++counts[cells + times_.bin_of(ended[n + 1])];
   }
   MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_INT64_T, MPI_SUM, communicator_);

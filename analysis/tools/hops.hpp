@@ -47,12 +47,13 @@ public:
   // id_count: of all ids, also those of members of clumps. counts: hops that begin now count. Collective.
   void observe(double time, const PeriodicBox& box, GlobalId id_count, const std::vector<Body>& bodies, bool counts);
 
-  // hops (1: that have ended), hop_length_mean, hop_length_10, _50, _90 (m: quantiles in per cent, from the histogram),
-  // hop_time_mean, hop_time_10, _50, _90 (s). Not a number as long as there was none.
+  // hops (1: that have ended), hop_length_mean (m: of the way along x, with its sign), hop_length_10, _50, _90 (m:
+  // quantiles of its magnitude in per cent, from the histogram), hop_time_mean, hop_time_10, _50, _90 (s). Not a number
+  // as long as there was none.
   std::vector<Diagnostic> results() const;
 
   // hop_length_edges (m), hop_time_edges (s), hop_length_count, hop_time_count (1: one more than there are edges, the
-  // first and the last for what lies outside; hops against the stream are in the first, too).
+  // first and the last for what lies outside; lengths by their magnitude).
   std::vector<Profile> profiles() const;
 
   void save(ArchiveWriter& archive, const std::string& group) const;  // collective

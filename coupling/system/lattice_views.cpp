@@ -76,7 +76,7 @@ void LatticeSystem<Real>::add_flow_diagnostics(const lbm::FluidSurvey& survey,
 template <typename Real>
 void LatticeSystem<Real>::add_grain_diagnostics(const lbm::FluidSurvey& survey,
                                                 std::vector<Diagnostic>& diagnostics) const {
-  diagnostics.push_back({"largest_grain_speed", "m/s", grains_->largest_speed()});
+  diagnostics.push_back({"largest_grain_speed", "m/s", grains_->largest_free_speed()});
   const std::vector<Diagnostic> budget =
       mass_.diagnostics(excess_mass(survey, rest_).sum, mass_owed(), parameters_.units);
   diagnostics.insert(diagnostics.end(), budget.begin(), budget.end());

@@ -138,7 +138,9 @@ constexpr double slow_disk = 1e8;
 // Sets the criteria that end the run early.
 void set_end(const Case& c, loop::LoopPlan& plan) {
   if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
-    plan.stop_criteria = {{dem::GrainSystem::restless_diagnostic, static_cast<double>(allowed_restless(c) + 1)}};
+    constexpr double rounding = 1e-9;
+    plan.stop_criteria = {
+        {dem::GrainSystem::restless_share_diagnostic, 1.0 - c.run.until_at_rest->quantile + rounding}};
     plan.stop_criteria_meaning = fmt::format("a share of {:g} of the grains at rest", c.run.until_at_rest->quantile);
   } else if (c.run.until_at_rest) {
     plan.stop_criteria = {

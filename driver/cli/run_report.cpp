@@ -82,24 +82,17 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
         record.reason, system.time()));
 }
 
-std::int64_t allowed_restless(const Case& c) {
-  std::int64_t free = 0;
-  for (const beds::Population& population : c.grains)
-    if (!population.held()) free += population.count;
-  constexpr double rounding = 1e-9;
-  return static_cast<std::int64_t>((1.0 - c.run.until_at_rest->quantile) * static_cast<double>(free) + rounding);
-}
-
 std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
                         const System& system) {
   if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
   if (c.run.until_at_rest->quantile < 1.0)
     return fmt::format(
-        "not at rest at the last check (every {} steps): {:.0f} grains are moving, and a share of {:g} at rest allows "
-        "{}; continue with --restart and a later --until",
+        "not at rest at the last check (every {} steps): a share of {:.3g} of the grains is moving, and a share of "
+        "{:g} "
+        "at rest allows {:.3g}; continue with --restart and a later --until",
         plan.steps_between_convergence_checks,
-        find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_diagnostic).value_or(0.0),
-        c.run.until_at_rest->quantile, allowed_restless(c));
+        find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_share_diagnostic).value_or(0.0),
+        c.run.until_at_rest->quantile, 1.0 - c.run.until_at_rest->quantile);
   const double speed = find_diagnostic(system.diagnostics(), dem::GrainSystem::largest_speed_diagnostic).value_or(0.0);
   return fmt::format(
       "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "

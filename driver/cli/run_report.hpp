@@ -37,9 +37,6 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
                    const Observers& observers, const std::vector<Diagnostic>& bed,
                    const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder, loop::Log& log);
 
-// Number of free grains that may still be moving when run.until_at_rest ends the run.
-std::int64_t allowed_restless(const Case& c);
-
 // Explains why a run with until_at_rest reached its end time; empty if its grains are at rest or the key is not set.
 std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
                         const System& system);

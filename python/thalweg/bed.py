@@ -155,8 +155,9 @@ def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=T
     for another one as much more as its hydraulic radius is larger. RunFolderError where that cannot be said, because
     the top drags on the flow as well."""
     if run.driven_by_slope and not is_obstructed(run):
+        sine = run.gravity[0] / np.linalg.norm(run.gravity)
         return share_of_gravity(run, start, stop) * shields_of(
-            run.slope, run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
+            np.tan(np.arcsin(sine)), run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls
         )
     measured = measured_shields_number(run, start, stop)
     if by_solid_fraction:

@@ -100,7 +100,8 @@ def stresses(run):
     z, fraction = grains["z"], grains["solid_fraction"]
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
     found = [("solid: contacts and motion", z, solid)]
-    if run.driven_by_slope and not run.side_walls and not is_obstructed(run):   # which would take a share
+    # Side walls and obstacles would take a share, and of several densities the profiles have no mean by layers.
+    if run.driven_by_slope and not run.side_walls and not is_obstructed(run) and run.has_one_density:
         driving = driving_stress(run, z, fraction)
         found.append(("driving", z, driving))
         if run.case.get("fluid"):
@@ -110,7 +111,7 @@ def stresses(run):
         share = 1.0 - np.interp(fluid["z"], z, fraction)
         reynolds = -run.section("fluid")["density"] * share * component(fluid, "reynolds_stress", "xz")
         found.append((f"fluid: resolved eddies{begins(run)[1]}", fluid["z"], reynolds))
-    if len(run.grains) and "fluid_stress" in run.grains[-1].arrays:
+    if len(run.grains) and "fluid_stress" in run.grains[-1].arrays and run.grains[-1].time > 0.0:
         frames = layer_profiles(run, start=run.averaged_from("grain_profiles"))
         found.append(("rotation stress", frames["z"], frames["rotation_stress"]))
     return found

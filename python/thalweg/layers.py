@@ -51,7 +51,7 @@ class LayerSums:
         layers = len(edges) - 1
         self.frames, self.volume, self.flux = 0, np.zeros(layers), np.zeros((layers, 3))
         self.mass, self.momentum, self.square = np.zeros(layers), np.zeros((layers, 3)), np.zeros(layers)
-        self.stresses = {}
+        self.stresses, self.with_stress = {}, {}   # sums, and frames that have them
 
     def parts(self, z, radius):
         """Volumes [layer, grain], with those of images beyond a periodic face."""
@@ -83,9 +83,10 @@ class LayerSums:
         self.momentum += mass @ frame.velocity
         self.square += mass @ np.sum(frame.velocity**2, axis=1)
         for name in ("contact_stress", "fluid_stress"):
-            if name in frame.arrays:
+            if name in frame.arrays and (name == "contact_stress" or frame.time > 0.0):   # the fluid's at 0: not yet known
                 sums = self.stresses.setdefault(name, np.zeros((len(part), 9)))
                 sums += part @ frame.arrays[name].reshape(-1, 9)
+                self.with_stress[name] = self.with_stress.get(name, 0) + 1
 
     def obstacles_in(self, frame):
         """Which grains of a frame are obstacles; they stand still, so that the first frame tells."""
@@ -109,7 +110,7 @@ class LayerSums:
                  "velocity": velocity, "flux": self.flux / whole[:, None],
                  "granular_temperature": (self.square / mass - np.sum(velocity**2, axis=1)) / 3.0}
         for name, sums in self.stresses.items():
-            found[name] = (sums / whole[:, None]).reshape(-1, 3, 3)
+            found[name] = (sums / whole[:, None]).reshape(-1, 3, 3) * (self.frames / self.with_stress[name])
         if "fluid_stress" in found:
             found["rotation_stress"] = found["fluid_stress"][:, 0, 2] - found["fluid_stress"][:, 2, 0]
         return Columns(found, UNITS, {"velocity": list("xyz"), "flux": list("xyz")}, axes=("z",))

@@ -295,6 +295,11 @@ class Run:
         return self.density / self.section("fluid")["density"]
 
     @property
+    def has_one_density(self):
+        """Whether all grains have the same density, as far as the case tells."""
+        return len({grains["density"] for grains in self.case.get("grains", ()) if "density" in grains}) <= 1
+
+    @property
     def density(self):
         """kg/m^3, of the free grains: mass over volume."""
         density = self.reference("density")

@@ -41,7 +41,7 @@ class Layers(made_up.MadeUpFolder):
         velocity = np.array([[[1.0, 0, 0], [3.0, 0, 0]]])
         stress = np.zeros((1, 2, 9))
         stress[0, :, 2], stress[0, :, 6] = (3.0, 5.0), (1.0, 1.0)   # xz, zx
-        self.write_frames((0.0,), place, velocity=velocity, fluid_stress=stress)
+        self.write_frames((0.5,), place, velocity=velocity, fluid_stress=stress)
         sums = LayerSums(np.array([0.0, D, 2 * D, 3 * D]), SIZE[0] * SIZE[1])
         sums.add(thalweg.Run(self.folder).grains[0])
         found = sums.profiles()
@@ -102,6 +102,24 @@ class Layers(made_up.MadeUpFolder):
         x, y, z = np.meshgrid((np.arange(24) + 0.5) * SIZE[0] / 24, (0.3 * SIZE[1], 0.7 * SIZE[1]),
                               (np.arange(layers) + 0.5) * D)
         return np.vstack([np.column_stack([x.ravel(), y.ravel(), z.ravel()]), [0.06, 0.005, (layers + 6) * D]])
+
+    def test_the_fluid_stress_of_the_start_is_not_known(self):
+        places = self.bed_of_layers(3)
+        stress = np.tile(np.arange(9.0), (len(places), 1))
+        self.write_frames((0.0, 0.5, 1.0), [places] * 3, fluid_stress=[0.0 * stress, stress, stress],
+                          contact_stress=[stress, stress, 4.0 * stress])
+        found = layer_profiles(thalweg.Run(self.folder), thickness=D)
+        share = found["solid_fraction"][1]
+        np.testing.assert_allclose(found["fluid_stress"][1].ravel(), share * np.arange(9.0))
+        np.testing.assert_allclose(found["contact_stress"][1].ravel(), 2.0 * share * np.arange(9.0))
+        self.assertAlmostEqual(found["rotation_stress"][1], share * (2.0 - 6.0))
+
+    def test_the_shields_number_of_an_inclined_gravity(self):
+        case = self.folder / "case.yaml"
+        plain = bed.shields_number(thalweg.Run(self.folder), 10 * D)
+        case.write_text(case.read_text().replace("gravity: {magnitude: 9.8, slope: 0.0748}", "gravity: {vector: [0.3, 3, -9.3]}"))
+        share = 0.3 / np.linalg.norm([0.3, 3.0, -9.3]) / np.sin(np.arctan(0.0748))
+        self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), 10 * D) / plain, share, 12)
 
     def test_profiles_of_nothing(self):
         for nothing in (0.0, np.nan):

@@ -86,6 +86,29 @@ output: {series: {every: 0.02}}
             )
             self.assertEqual(self.series(out)["restless_grains"].tolist(), [40, 40, 40])
 
+    def test_the_share_at_rest_is_one_of_the_grains_that_are_there(self):
+        # Nearly all fall into the sink, and a tenth of what there was at the start is left, on its way.
+        case = self.folder / "drained.yaml"
+        case.write_text(
+            """
+system: grains
+domain: {size: [0.06, 0.06, 0.40], spacing: 5.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}}
+gravity: {magnitude: 9.8}
+grains:
+  - {count: 100, diameter: 4.0e-3, density: 2550,
+     placement: {pattern: random, seed: 1, region: {lower: [0, 0, 0.02], upper: [0.06, 0.06, 0.39]}}}
+sinks: [{region: {lower: [0, 0, 0], upper: [0.054, 0.06, 0.015]}}]
+contact: {normal_stiffness: 2000, restitution: 0.9, friction: 0.3, wall_friction: 0.3}
+run: {until: 0.32, until_at_rest: {largest_speed: 1.0e-3, largest_acceleration: 0.05, quantile: 0.9}}
+output: {series: {every: 0.01}}
+"""
+        )
+        said = self.run_well("run", case, "--out", "drained").stdout
+        known = self.series("drained")
+        self.assertLessEqual(known["restless_grains"][-1], 10)   # of the 100 at the start nine tenths are not restless
+        self.assertGreater(known["restless_share"][-1], 0.5)
+        self.assertIn("not at rest at the last check", said)
+
     def test_a_fill_is_as_deep_as_it_says(self):
         fill = [
             "--set",

@@ -119,6 +119,17 @@ TEST(BedSurface, OfACubicLatticeIsTheTopOfItsHighestLayer) {
 }
 
 // Half of gravity drives the flow in the middle of its ramp, and 3/16 - 2/64 of it after a quarter.
+// Of grains that a floor is made of half of the volume may lie below it.
+TEST(BedSurface, CountsNothingBelowTheFloor) {
+  Spheres spheres(world);
+  std::vector<Vec3> positions = cubic_lattice(10);
+  for (Vec3& position : positions) position.z() -= 0.5 * d;
+  BedSurface surface(world, spheres.box(), keys(), d, flume, 0.0);
+  surface.observe(spheres.at(0, positions));
+  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_height"), 9.5 * d, 0.01 * d);
+  EXPECT_NEAR(value_of(surface.results(), "bulk_solid_fraction_mean"), std::numbers::pi / 6.0, 0.02 * 0.53);
+}
+
 TEST(BedSurface, DuringTheRampHasTheStressOfTheMoment) {
   Spheres spheres(world);
   BedFlow flow{0, 500.0, 80.0};

@@ -142,17 +142,17 @@ TEST(TransportRate, OfDryGrainsHasNoQStar) {
 }
 
 // v_x = id/100 of the grains that are no multiple of 3, from 0.01 to 2.99 m/s, v_z = -1 m/s of all of them; the rest,
-// at 0.03 m/s, is not moving. With fall speeds of 3 m/s a bin is 0.3 m/s wide, from -15 m/s on.
+// at 0.03 m/s, is not moving. With fall speeds of 3 m/s a bin is 0.3 m/s wide, from -45 m/s on.
 TEST(TransportRate, CountsTheVelocitiesOfMovingGrains) {
   TransportRate rate(world, scales, {});
   rate.observe(MadeUpGrains(world, 300, [](GlobalId id) { return runner(id, 1.0); }).snapshot(0.0));
   std::map<std::string, std::vector<double>> shown;
   for (const Profile& profile : rate.profiles()) shown[profile.name] = profile.values;
   const std::vector<double>&edges = shown.at("velocity_edges"), &density = shown.at("velocity_density");
-  ASSERT_EQ(edges.size(), 201u);
-  ASSERT_EQ(density.size(), 600u);
+  ASSERT_EQ(edges.size(), 301u);
+  ASSERT_EQ(density.size(), 900u);
   double whole = 0.0;
-  for (std::size_t b = 0; b < 200; ++b) {
+  for (std::size_t b = 0; b < 300; ++b) {
     const double width = edges[b + 1] - edges[b];
     EXPECT_NEAR(width, 0.3, 1e-12);
     whole += density[3 * b] * width;

@@ -44,6 +44,26 @@ TEST(Hinge, TorquesAreThoseOfARigidBody) {
   EXPECT_NEAR(torques_about(*hinge, ring[2], Vec3(0.0, 0.0, -3.0), Vec3::Zero()).critical, (a - 0.1) * 3.0, 1e-14);
 }
 
+// In a stream to the left the mirror image of the hinge: the contacts furthest along the way of the grain.
+TEST(Hinge, IsMirroredWithTheStream) {
+  const auto mirrored = [](Touch touch) {
+    touch.arm.x() *= -1.0;
+    touch.force.x() *= -1.0;
+    return touch;
+  };
+  const std::vector<Touch> touches{mirrored(one), mirrored(two), mirrored(three)};
+  const GrainRing ring{sample(0.0, 0.0, touches), sample(0.1, 1.0, touches, Vec3(-0.1, 0.0, 0.02))};
+  const auto hinge = hinge_of(ring, 0, Vec3(-0.1, 0.0, 0.02));
+  ASSERT_TRUE(hinge);
+  EXPECT_EQ(hinge->partners, (std::array<GlobalId, 2>{1, 2}));
+  EXPECT_NEAR((hinge->axis + Vec3::UnitY()).norm(), 0.0, 1e-15);
+  const HingeTorques torques =
+      torques_about(*hinge, sample(0.0, 0.0, touches, Vec3::Zero(), Vec3(-2.0, 0.0, 0.5), Vec3(-0.3, -0.6, 0.1)),
+                    Vec3(-0.1, 0.0, -3.0), Vec3::Zero());
+  EXPECT_NEAR(torques.fluid, h * 2.0 + a * 0.5 + 0.6, 1e-14);
+  EXPECT_NEAR(torques.critical, a * 3.0 - h * 0.1, 1e-14);
+}
+
 // A clump that touches one neighbour with two members rolls about the line through both contacts, wherever the members'
 // centres are; a contact goes on as that of the same member.
 TEST(Hinge, OfAClumpIsThroughTheContactsOfItsMembers) {

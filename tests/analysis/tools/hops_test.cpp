@@ -32,12 +32,14 @@ struct Track {
   double time() const { return interval * (last - first + 1); }
 };
 
-void observe(Hops& hops, MPI_Comm communicator, int n, int counts_from) {
+// way: 1, or -1 for the mirror image.
+void observe(Hops& hops, MPI_Comm communicator, int n, int counts_from, double way = 1.0) {
   std::vector<Body> bodies;
   for (GlobalId id = 0; id < count; ++id) {
     if ((id * 5 + n) % size_of(communicator) != rank_of(communicator)) continue;  // another owner every time
     const Track track(id);
-    bodies.push_back({id, 1.0, Vec3(track.x(id, n), 0.0, 0.0), Vec3(track.moves(n) ? 3.0 : 0.0, 0.0, 0.0)});
+    const double x = way > 0.0 ? track.x(id, n) : length - track.x(id, n);
+    bodies.push_back({id, 1.0, Vec3(x, 0.0, 0.0), Vec3(track.moves(n) ? way * 3.0 : 0.0, 0.0, 0.0)});
   }
   hops.observe(n * interval, box, count, bodies, n >= counts_from);
 }
@@ -66,6 +68,18 @@ TEST(Hops, AreFromRestToRestThroughPeriodicFacesAndFromRankToRank) {
     EXPECT_NEAR(value_of(results, "hop_length_" + name) / (3.0 * interval * intervals), 1.0, 0.123) << name;
     EXPECT_NEAR(value_of(results, "hop_time_" + name) / (interval * intervals), 1.0, 0.123) << name;
   }
+}
+
+TEST(Hops, AreAsLongInAStreamToTheLeft) {
+  Hops right(world, 0.1, 0.1, 0.5), left(world, 0.1, 0.1, 0.5);
+  for (int n = 0; n < 14; ++n) {
+    observe(right, world, n, 0);
+    observe(left, world, n, 0, -1.0);
+  }
+  const std::vector<Diagnostic> there = right.results(), back = left.results();
+  EXPECT_NEAR(value_of(back, "hop_length_mean"), -value_of(there, "hop_length_mean"), 1e-12);
+  for (const char* name : {"hops", "hop_length_10", "hop_length_50", "hop_length_90", "hop_time_mean", "hop_time_50"})
+    EXPECT_EQ(value_of(back, name), value_of(there, name)) << name;
 }
 
 TEST(Hops, UnderWayAtTheStartDoNotCount) {
