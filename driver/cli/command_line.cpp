@@ -164,16 +164,16 @@ void add_new(CLI::App& app, Command& command, Texts& texts) {
   number("--width", e.width, "Width between side walls, m (default: periodic across the stream)");
   number("--periodic-width", e.periodic_width, "Width of a box without side walls, m (default: set by the accuracy)");
   number("--length", e.length, "Length of the box, periodic along the stream, m (default: set by the accuracy)");
-  number("--layers", e.layers, "Thickness of the bed in diameters");
-  number("--density", e.density, "Density of the grains, kg/m^3");
+  number("--layers", e.layers, "Thickness of the bed in diameters (default: 5)");
+  number("--density", e.density, "Density of the grains, kg/m^3 (default: 2650)");
   number("--fluid-density", e.given_fluid_density, "Density of the fluid, kg/m^3 (default: 1000, water)");
-  number("--viscosity", e.viscosity, "Kinematic viscosity, m^2/s");
-  add->add_option("--accuracy", e.accuracy, "look: 6 cells across the smallest grain, measure: 10, publish: 15")
+  number("--viscosity", e.viscosity, "Kinematic viscosity, m^2/s (default: 1e-6, water)");
+  add->add_option("--accuracy", e.accuracy, "look (the default): 6 cells across the smallest grain, measure: 10, publish: 15")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Accuracy>{
           {"look", Accuracy::look}, {"measure", Accuracy::measure}, {"publish", Accuracy::publish}}))
       ->type_name("look|measure|publish");
-  number("--cores", e.cores, "Cores available");
-  number("--hours", e.hours, "Hours available; sides of the box that are not given are shortened to fit");
+  number("--cores", e.cores, "Cores available (default: 1)");
+  number("--hours", e.hours, "Hours available; sides of the box that are not given are shortened to fit (default: any)");
   add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 

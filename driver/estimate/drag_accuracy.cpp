@@ -114,7 +114,7 @@ std::string drag_of(const Case& c, const Bluff& body, double speed, const char* 
     return fmt::format("of {} alone in a stream about {:.0f} % too large {}", what,
                        100.0 * stream_drag_error(cells, reynolds), where);
   if (reynolds < 500.0)
-    return fmt::format("{} in slow flow, {}; nothing is validated between 10 and {}", slow_text(c, cells), where,
+    return fmt::format("{} in slow flow, {}; there is no table of it between 10 and {}", slow_text(c, cells), where,
                        tabled ? 300 : 500);
   if (!eddies) return fmt::format("not validated {} without a subgrid model, which was unstable at 2400", where);
   return fmt::format("too large {}; at 2400 a sphere alone fell {}", where, nearest_in_water(c.fluid, cells));
