@@ -99,6 +99,28 @@ TEST(StressBalance, OfASlowFlowOverHeldSpheresIsTheWeightAbove) {
   EXPECT_GT(drag, 0.5 * bed_stress);
 }
 
+// Spheres held at the top, of which half lies beyond it, hold the flow back as much as the floor. All their force is
+// above the fluid between, in which the viscous stress is the whole one.
+TEST(StressBalance, CountsAllTheForceOnGrainsThatTheTopCuts) {
+  WaterBox box = viscous_box({18, 18, 36}, 9.0, 1.5);
+  box.gravity = Vec3(0.02, 0.0, -9.8);
+  const double top = 36.0 * box.spacing;
+  for (int k = 0; k < 4; ++k)
+    box.seeds.push_back(glass_sphere(k, Vec3((k % 2 + 0.31) * 5e-3, (k / 2 + 0.17) * 5e-3, top - 0.2e-3)));
+  for (dem::GrainSeed& seed : box.seeds) seed.motion = dem::Motion::fixed;
+  const auto system = system_of(box);
+  for (int step = 0; step < 10000; ++step) system->advance();
+  StressBalance balance = balance_of(box, *system, 1.2e-3, {{0, 4}});
+  measure(balance, *system);
+  const Values values = by_name(balance);
+  const double weight = 1000.0 * 0.02 * top;
+  EXPECT_LT(largest_apart(values, "total_stress", "driving_stress"), 1e-4 * weight);
+  for (std::size_t l = 0; l < values.at("z").size(); ++l)
+    if (values.at("z")[l] + 0.5 * values.at("thickness")[l] < top - 0.2e-3 - 2.5e-3) {
+      EXPECT_NEAR(values.at("viscous_stress")[6 * l + 4], values.at("total_stress")[l], 1e-3 * weight);
+    }
+}
+
 // Spheres held at the floor and just below the top of a shear cell: no flow goes over them, so the difference is a
 // share of the largest driving stress, not of the small one that the upper spheres leave above their middle.
 TEST(StressBalance, GrainsThatReachTheTopAreNoBed) {
