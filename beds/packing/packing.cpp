@@ -13,7 +13,10 @@ namespace thalweg::beds {
 
 double settled_fraction(const PeriodicBox& box, double diameter, bool disks) {
   if (disks) return settled_disks;
-  return !box.periodic[1] && box.size.y() < 3.0 * diameter ? settled_near_walls : settled_bed;
+  double fraction = settled_bed;
+  for (const int axis : {0, 1})
+    if (!box.periodic[axis]) fraction *= 1.0 - std::min(diameter / box.size[axis], 1.0) / 3.0;
+  return fraction;
 }
 
 bool wraps(const PeriodicBox& box, const Region& region, int axis) {

@@ -27,12 +27,13 @@ void check_region(const PeriodicBox& box, const Region& region);
 // Solid fraction of random close packing of equal spheres, and of disks in their plane: no bed is denser.
 inline constexpr double densest_bed = 0.64, densest_disks = 0.84;
 
-// Solid fraction of a bed that has settled, between random loose and random close packing: 0.55 to 0.64 of spheres,
-// 0.77 to 0.84 of disks. Between side walls closer than three diameters that of the 969 grains in the flume of Zhang et
-// al. 2022, 18 diameters high.
-inline constexpr double settled_bed = 0.6, settled_disks = 0.8, settled_near_walls = 0.554;
+// Solid fraction of a bed that has settled far from walls, between random loose and random close packing: 0.55 to 0.64
+// of spheres, 0.77 to 0.84 of disks.
+inline constexpr double settled_bed = 0.6, settled_disks = 0.8;
 
-// That of a bed in this box. diameter: m, of a grain that stands for all.
+// That of a bed in this box. Along a side wall a sixth of a diameter stays empty, so that of spheres it is 0.6 times
+// 1 - d/(3 W) for each axis in plan along which walls are W apart (cases/settled_bed/README.md, "Between walls").
+// diameter: m, of a grain that stands for all.
 double settled_fraction(const PeriodicBox& box, double diameter, bool disks);
 
 // Places of `count` equal grains spread over the region as evenly as a cubic lattice allows: the lattice with the

@@ -58,7 +58,7 @@ struct OrientationKeys {
 struct FillKeys {
   std::optional<double> depth;     // m
   std::optional<double> layers;    // 1; or the depth in reference diameters
-  std::optional<double> porosity;  // 1, of the settled bed; else that of settled_bed, or settled_disks (packing.hpp)
+  std::optional<double> porosity;  // 1, of the settled bed; else by settled_fraction() (packing.hpp)
   bool operator==(const FillKeys&) const = default;
 };
 

@@ -116,7 +116,7 @@ static void describe(SectionVisitor& visit, FillKeys& fill) {
               .above = 0.0,
               .example = 4.0});
   visit.real("porosity", fill.porosity,
-             {.meaning = "of the settled bed; default: 0.4; between near side walls 0.446; for disks 0.2",
+             {.meaning = "of the settled bed; default: 0.4, and more between side walls; for disks 0.2",
               .above = 0.0,
               .below = 1.0,
               .example = 1.0 - settled_bed});

@@ -107,7 +107,7 @@ std::string bed_text(const Case& c) {
   const double height = settled_height(c), diameter = reference_grain(c).diameter;
   if (height < diameter) return {};
   const double placed = placed_share(c);
-  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:g}){}", height,
+  return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:.3g}){}", height,
                      height / diameter, settled_fraction(c),
                      placed < fully_placed
                          ? fmt::format("; placed over {:.2g} % of the floor, it spreads", 100.0 * placed)

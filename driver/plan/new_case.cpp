@@ -96,9 +96,9 @@ std::string extra_of(const Draft& draft, const std::string& section) {
 
 // m, in which the grains are placed: a loose packing, with the gaps that floor and lid of the region leave.
 double packed_height(const Experiment& experiment, const Draft& draft, double median) {
-  const bool narrow = experiment.width && draft.width < 3.0 * median;
-  return draft.looseness * median *
-         (experiment.layers * (narrow ? beds::settled_near_walls / 0.5 : beds::settled_bed / 0.54) + 0.25);
+  const PeriodicBox box{Vec3(draft.length, draft.width, 0.0), {true, !experiment.width, false}};
+  const double placed = experiment.width && draft.width < 3.0 * median ? 0.5 : 0.54;  // solid fraction
+  return draft.looseness * median * (experiment.layers * beds::settled_fraction(box, median, false) / placed + 0.25);
 }
 
 std::string yaml_of(const Experiment& experiment, const Draft& draft) {

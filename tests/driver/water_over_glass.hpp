@@ -22,7 +22,7 @@ inline Case water_over_glass(double d, double slope, double depth, double width,
   grains.density = 2550.0;
   c.grains = {grains};
   const double length = 24.0 * d;
-  const double fraction = width < 3.0 * d && sides != lbm::FaceType::periodic ? 0.554 : 0.6;
+  const double fraction = 0.6 * (sides == lbm::FaceType::periodic ? 1.0 : 1.0 - d / (3.0 * width));
   const double bed = 1000.0 * std::numbers::pi / 6.0 * d * d * d / (fraction * length * width);
   c.domain.size = Vec3(length, width, bed + depth);
   c.domain.spacing = 5e-4;

@@ -37,8 +37,9 @@ double shields_number(const Case& c, double depth, int walls) {
   return std::sin(std::atan(*c.gravity.slope)) * radius / (1.55 * 4.95e-3);
 }
 
-// Between near walls grains settle to a solid fraction of 0.554.
-const double bed = 230.0 * M_PI / 6.0 * std::pow(4.95e-3, 3) / (0.0594 * 0.010725) / 0.554;
+// Between walls W apart grains settle to a solid fraction of 0.6 (1 - d/(3 W)).
+const double bed =
+    230.0 * M_PI / 6.0 * std::pow(4.95e-3, 3) / (0.0594 * 0.010725) / (0.6 * (1.0 - 4.95 / (3.0 * 10.725)));
 
 TEST(DerivedFlow, SlopeAndHeightFollowFromShieldsNumberAndDepth) {
   for (const int walls : {0, 1, 2})
