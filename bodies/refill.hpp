@@ -1,6 +1,6 @@
 // Gives cells that a body has just uncovered their populations. With rho_n the density at rest plus the mean excess
-// over it of the neighbours that were fluid before (none: that of the fluid around the body), u_w the velocity of the
-// body's rigid motion at the cell, F the body force:
+// over it of the neighbours that were fluid before (none: that of the fluid around a grain, no excess beside a solid),
+// u_w the velocity of the body's rigid motion at the cell, F the body force:
 //   f_i^c = f_i^eq(rho_n, u_w) + 3/2 w_i c_i.F
 // These are post-collision populations, whose momentum is rho u + F/2. Lattice units.
 //

@@ -1,11 +1,16 @@
-// Observers on a checkpoint that has lost rows.
+// Observers on a checkpoint that has lost rows, and where they keep records.
 #include "driver/input/run_context.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/run_history.hpp"
+#include "io/folder/run_folder.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/support/damaged_archive.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace thalweg::driver::damaged_means_test {
 namespace {
@@ -81,6 +86,15 @@ TEST(DamagedMeans, AreRefusedOrSaidToBeginAnew) {
     if (refused || !history.since.empty()) continue;
     EXPECT_EQ(test::first_difference(whole, again.saved({})), "") << loss.what;
   }
+}
+
+// A run folder is cleared of them, and of those that a restart leaves behind.
+TEST(RecordFolders, AreKnownOfAllObserversThatHaveSome) {
+  const std::vector<std::string> known = io::RunFolder::names_of_records();
+  const Watched watched_run;
+  for (const auto& observer : watched_run.observers)
+    EXPECT_EQ(std::count(known.begin(), known.end(), observer->name()), observer->has_records() ? 1 : 0)
+        << observer->name();
 }
 
 // Nothing that settings could mean is left of a dataset without rows.

@@ -62,20 +62,28 @@ TEST(SolidsWithGrains, HaveNoMomentsBesideThoseOfGrains) {
   EXPECT_GT(magnitude(1), 0.0);
 }
 
-// A slab across a periodic box, of which one surface ends beneath the middle of a ball and the other half a box away;
-// the ball spins a gap of one cell above it.
-WaterBox ball_over_slab(double lower, double upper) {
+// A viscous fluid between floor and lid, with a box and one ball of 8 mm that is held.
+WaterBox held_ball(const Index3& cells, const TriangleMesh& solid, const Vec3& centre) {
   WaterBox box;
-  box.cells = {24, 24, 24};
+  box.cells = cells;
   box.spacing = 1e-3;
   box.periodic = {true, true, false};
   box.viscosity = 1e-5;
   box.smagorinsky_constant = 0.0;
   box.collision = lbm::CollisionModel::trt;
   box.closed = true;
-  box.solids = {thalweg::test::box_mesh(Vec3(lower, -14e-3, -3e-3), Vec3(upper, 38e-3, 4.3e-3))};
-  box.seeds = {glass_sphere(0, Vec3(0.2e-3, 12.1e-3, 8.7e-3), Vec3::Zero(), 4e-3)};
+  box.solids = {solid};
+  box.seeds = {glass_sphere(0, centre, Vec3::Zero(), 4e-3)};
   box.seeds[0].motion = dem::Motion::fixed;
+  return box;
+}
+
+// A slab across a periodic box, of which one surface ends beneath the middle of a ball and the other half a box away;
+// the ball spins a gap of one cell above it.
+WaterBox ball_over_slab(double lower, double upper) {
+  WaterBox box =
+      held_ball({24, 24, 24}, thalweg::test::box_mesh(Vec3(lower, -14e-3, -3e-3), Vec3(upper, 38e-3, 4.3e-3)),
+                Vec3(0.2e-3, 12.1e-3, 8.7e-3));
   box.seeds[0].angular_velocity = Vec3(0.0, 5.0, 0.0);
   return box;
 }
@@ -99,20 +107,12 @@ TEST(SolidsWithGrains, FeelABallAlikeWhereverTheirSurfaceEnds) {
 // normal. Without the pressure on the patch that the ball hides it was an eighth of the weight displaced. Hidden links
 // are cut at the ball in place of the plate, at most one cell of head away.
 TEST(SolidsWithGrains, CarryThePressureOnWhatAGrainHides) {
-  WaterBox box;
-  box.cells = {36, 24, 24};
-  box.spacing = 1e-3;
-  box.periodic = {true, true, false};
-  box.viscosity = 1e-5;
-  box.smagorinsky_constant = 0.0;
-  box.collision = lbm::CollisionModel::trt;
-  box.closed = true;
+  WaterBox box =
+      held_ball({36, 24, 24}, thalweg::test::box_mesh(Vec3(10.3e-3, -2e-3, -3e-3), Vec3(14.3e-3, 26e-3, 12.2e-3)),
+                Vec3(18.3e-3, 12.1e-3, 4.2e-3));
   box.links.rule = bodies::LinkRule::cli;
   box.full_gravity = true;
   box.gravity = Vec3(0.0, 0.0, -g);
-  box.solids = {thalweg::test::box_mesh(Vec3(10.3e-3, -2e-3, -3e-3), Vec3(14.3e-3, 26e-3, 12.2e-3))};
-  box.seeds = {glass_sphere(0, Vec3(18.3e-3, 12.1e-3, 4.2e-3), Vec3::Zero(), 4e-3)};
-  box.seeds[0].motion = dem::Motion::fixed;
   const auto system =
       make_system<double>(box, MPI_COMM_WORLD, Decomposition::best_layout(box.cells, size_of(MPI_COMM_WORLD)));
   for (int n = 0; n < 20; ++n) system->advance();
