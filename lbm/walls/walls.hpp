@@ -12,10 +12,9 @@
 //   outlet             f_o(x, t+1) = f_o^eq(rho_w, u),   u of the cell, rho_w of outlet_density.hpp
 //                      What enters has no part out of equilibrium: at small viscosities a rule that keeps or reverses
 //                      that part (anti-bounce-back, extrapolation) amplifies it, and breaks down as eddies leave.
-//                      Where an eddy brings fluid in, u = 0: it comes from rest. With the velocity of the cell it would
-//                      bring more energy the faster it is, and backflow that lasts would grow without limit. Where the
-//                      whole face lets fluid in, it enters with the velocity of the cell and rho_w - 3 u^2/2
-//                      (Bernoulli).
+//                      Fluid that enters, on the whole or in an eddy, does so along the normal with the speed w of
+//                      outlet_density.hpp, u = w n, and at rho_w - 3 w^2/2, the pressure at which it was at rest. With
+//                      the velocity of the cell it would feed on itself.
 //
 // Slip length s and bounced fraction, exact in Couette flow for tau - 1/2 = 3 nu and nu with the eddies' share in
 // shear, g being the shear rate in the cell at the wall (Zhang et al. 2022, appendix A, A2):
