@@ -88,7 +88,7 @@ struct GrainContext {
 struct RunContext {
   PeriodicBox box;
   double until = 0.0;           // s, the end of the run
-  bool has_rows = true;         // of the series, with which observers measure whose `every` is 0
+  bool has_rows = true;         // of the series, after the start, with which observers measure whose `every` is 0
   double ramp = 0.0;            // s in which gravity rises
   Vec3 gravity = Vec3::Zero();  // m/s^2
   std::optional<FluidContext> fluid;

@@ -58,8 +58,6 @@ std::array<bool, 3> periodic_axes(const DomainCase& domain) {
   return {periodic(x_low), periodic(y_low), periodic(bottom)};
 }
 
-bool has_series_rows(const Case& c) { return c.output.series.every > 0.0 && c.output.series.every <= c.run.until; }
-
 double fluid_time_step(const Case& c) { return *c.fluid.time_step; }
 
 std::int64_t grain_steps(const Case& c) {

@@ -218,7 +218,6 @@ double fluid_time_step(const Case& c);    // s
 std::int64_t grain_steps(const Case& c);  // sub-steps in a step of the fluid; of dry grains in one step_time()
 double grain_time_step(const Case& c);    // s: a sub-step, or the step of dry grains
 double step_time(const Case& c);          // s: of the fluid, as many steps of dry grains as make one, of a column
-bool has_series_rows(const Case& c);      // after the start, with which observers measure that have no interval
 Vec3 gravity_vector(const GravityCase& gravity);  // m/s^2: (g sin, 0, -g cos) of atan(slope)
 Units units_of(const Case& c);                    // units of a run with a fluid
 double relaxation_time(const Case& c);            // BGK, without the subgrid model

@@ -213,7 +213,7 @@ public:
                   size_of(communicator)} {
     if (restarts()) start_point_.changes = changes_since(paths.checkpoints.front(), paths, c, communicator);
     if (!c.grains.empty()) identity_.reference = reference_grain(c);
-    identity_.has_rows = has_series_rows(c);
+    identity_.has_series = c.output.series.every > 0.0;
     build();
     read_state();
   }

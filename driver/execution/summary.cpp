@@ -58,7 +58,7 @@ io::JsonObject summary_of(const RunIdentity& identity, const System& system, con
       .set("largest", diagnostics_as_json(record.largest, units));
   summary.set("largest_from", record.largest_from);
   for (const auto& observer : observers)
-    if (observer->every() > 0.0 || identity.has_rows)  // else it has measured nothing
+    if (observer->every() > 0.0 || identity.has_series)  // else it has measured nothing
       summary.set(observer->name(), diagnostics_as_json(run_history.results_of(*observer), units));
   if (!bed.empty()) summary.set("bed", diagnostics_as_json(bed, units));
   summary.set("provenance", as_json(identity.provenance));

@@ -26,8 +26,8 @@ struct RunIdentity {
   double memory_bound_mlups = 0.0;               // rate that the memory bandwidth allows; 0: caches hold the lattice
   std::optional<MemoryUse> memory = {};          // once it has ended in good order
   std::int64_t warnings = 0;                     // about the case, printed when the run begins
-  bool has_rows = true;                          // of the series, with which observers measure that have no interval
-  Provenance provenance = {};                    // once the run folder is there
+  bool has_series = true;      // with whose rows, the first of the start, observers measure that have no interval
+  Provenance provenance = {};  // once the run folder is there
 };
 
 // summary.json of a run that has ended in whatever way. `bed` (final_bed.hpp) and `phases` may be empty.

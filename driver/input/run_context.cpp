@@ -86,7 +86,7 @@ analysis::RunContext run_context(const Case& c) {
   analysis::RunContext context;
   context.box = {c.domain.size, periodic_axes(c.domain)};
   context.until = c.run.until;
-  context.has_rows = has_series_rows(c);
+  context.has_rows = c.output.series.every > 0.0 && c.output.series.every <= c.run.until;
   context.ramp = c.run.ramp;
   context.gravity = gravity_vector(c.gravity);
   if (has_fluid(c)) context.fluid = fluid_context(c);
