@@ -168,12 +168,14 @@ void add_new(CLI::App& app, Command& command, Texts& texts) {
   number("--density", e.density, "Density of the grains, kg/m^3 (default: 2650)");
   number("--fluid-density", e.given_fluid_density, "Density of the fluid, kg/m^3 (default: 1000, water)");
   number("--viscosity", e.viscosity, "Kinematic viscosity, m^2/s (default: 1e-6, water)");
-  add->add_option("--accuracy", e.accuracy, "look (the default): 6 cells across the smallest grain, measure: 10, publish: 15")
+  add->add_option("--accuracy", e.accuracy,
+                  "look (the default): 6 cells across the smallest grain, measure: 10, publish: 15")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Accuracy>{
           {"look", Accuracy::look}, {"measure", Accuracy::measure}, {"publish", Accuracy::publish}}))
       ->type_name("look|measure|publish");
   number("--cores", e.cores, "Cores available (default: 1)");
-  number("--hours", e.hours, "Hours available; sides of the box that are not given are shortened to fit (default: any)");
+  number("--hours", e.hours,
+         "Hours available; sides of the box that are not given are shortened to fit (default: any)");
   add->final_callback([&] { command.kind = Command::Kind::create; });
 }
 

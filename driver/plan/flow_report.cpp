@@ -24,7 +24,8 @@ constexpr double fully_placed = 0.95;  // share of the floor from which grains n
 
 std::string on_lattice(const Case& c, double speed) {
   const double lattice = speed / units_of(c).velocity();
-  return fmt::format("{:.3g} cells per step, Mach number {:.3g} (accurate below 0.17)", lattice, lattice * std::sqrt(3.0));
+  return fmt::format("{:.3g} cells per step, Mach number {:.3g} (accurate below 0.17)", lattice,
+                     lattice * std::sqrt(3.0));
 }
 
 void add_speed(const Case& c, const FlowEstimate& flow, Lines& lines) {
