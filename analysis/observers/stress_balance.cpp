@@ -140,10 +140,10 @@ void StressBalance::give_parts(const Snapshot& snapshot, const BalancedBodies& b
     for (int layer = layers_.at(lowest); layer <= layers_.at(lowest + 2.0 * radius); ++layer) {
       const double from = layers_.bottom(layer) - lowest, height = layers_.height(layer), to = from + height;
       const double part = volume_between(radius, 0.0, from, to), share = part / whole, m = share * body.mass;
-      const double moment = sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part;
+      const double height_moment = sphere_moment_below(radius, to) - sphere_moment_below(radius, from) - from * part;
       // Forces act inside the box, so that what a held grain has above the top acts there.
       const double above = layer + 1 == layers_.count() ? volume_between(radius, 0.0, to, 2.0 * radius) : 0.0;
-      const double acting = (part + above) / whole, lever = (moment + above * height) / whole;
+      const double acting = (part + above) / whole, lever = (height_moment + above * height) / whole;
       std::array<double, grain_columns> row{grains.is_member(i) ? share * body.volume : part, m, m * v[0], m * v[1],
                                             m * v[2]};
       double* term = row.data() + momentum_flux;

@@ -51,8 +51,8 @@ namespace thalweg::bodies {
 //
 // moments: where given, one for each body, to which sum F_a x_b is added but for the first `solids` of them, F the
 // momentum of a link and x its arm; the torque is its antisymmetric part. (A solid as large as the box would leave the
-// range of exact sums.) by_height: where given, the force of every link is added at the height half a link
-// from its fluid cell.
+// range of exact sums.) by_height: where given, the force of every link is added at the height half a link from its
+// fluid cell.
 template <typename Real>
 class InterpolatedBounceBack {
 public:
@@ -173,8 +173,8 @@ private:
   const LinkOptions& options_;
   std::vector<LinkBody>& bodies_;
   std::vector<FixedTensor>* moments_;  // null: not measured
-  int solids_;
-  MomentumByHeight* by_height_;  // null: not measured
+  int solids_;                         // the first bodies, of which no moments are measured
+  MomentumByHeight* by_height_;        // null: not measured
   BlockFrame block_;
 
   LinkSlots slots_;

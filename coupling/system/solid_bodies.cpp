@@ -147,10 +147,12 @@ void SolidBodies<Real>::load(ArchiveReader& archive) {
   if (!has("solids/force", shape))
     throw InputError(fmt::format("The checkpoint does not hold {} solids as this case does; keep the list solids.",
                                  bodies_.solids()));
-  const std::uint64_t moving_there = archive.has("solids/debt") ? archive.shape("solids/debt").front() : 0;
-  if (moving_there != moving_.size() || (any_moves() && !has("solids/debt", {moving_.size(), debt_width})))
+  if (any_moves() ? !has("solids/debt", {moving_.size(), debt_width}) : archive.has("solids/debt")) {
+    const std::vector<std::uint64_t> there =
+        archive.has("solids/debt") ? archive.shape("solids/debt") : std::vector<std::uint64_t>();
     throw InputError(fmt::format("{} solids move in the checkpoint and {} in this case; keep their motions.",
-                                 moving_there, moving_.size()));
+                                 there.empty() ? 0 : there.front(), moving_.size()));
+  }
   loaded_.forces.resize(solids);
   loaded_.torques.resize(solids);
   archive.read("solids/force", words_of(loaded_.forces), {shape, {0, 0}, shape});

@@ -87,9 +87,8 @@ std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::L
   if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
   if (c.run.until_at_rest->quantile < 1.0)
     return fmt::format(
-        "not at rest at the last check (every {} steps): a share of {:.3g} of the grains is moving, and a share of "
-        "{:g} "
-        "at rest allows {:.3g}; continue with --restart and a later --until",
+        "not at rest at the last check (every {} steps): a share of {:.3g} of the grains is moving, and a share "
+        "of {:g} at rest allows {:.3g}; continue with --restart and a later --until",
         plan.steps_between_convergence_checks,
         find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_share_diagnostic).value_or(0.0),
         c.run.until_at_rest->quantile, 1.0 - c.run.until_at_rest->quantile);

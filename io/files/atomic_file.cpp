@@ -19,15 +19,13 @@ namespace thalweg::io {
 
 namespace {
 
-// Removes what is left of a full disk, whose room other files need.
-void remove_if_there(const std::filesystem::path& partial) {
+// Throws the error of the last call, which could not write the file; what is left of it on a full disk goes first, as
+// other files need the room.
+[[noreturn]] void give_up(const std::filesystem::path& path, const std::filesystem::path& partial) {
+  const RunError error(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
   std::error_code ignored;
   std::filesystem::remove(partial, ignored);
-}
-
-// The error of a file that the last call could not write.
-RunError cannot_write(const std::filesystem::path& path) {
-  return RunError(fmt::format("{}: cannot write the file: {}.", path.string(), std::strerror(errno)));
+  throw error;
 }
 
 // Writes the text under a name (path + ending) until it is renamed, and returns this name.
@@ -38,10 +36,8 @@ std::filesystem::path write_partial(const std::filesystem::path& path, const std
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
-  if (file) return partial;
-  const RunError error = cannot_write(path);
-  remove_if_there(partial);
-  throw error;
+  if (!file) give_up(path, partial);
+  return partial;
 }
 
 // fsync() of a file or a folder; some file systems refuse it for a folder.
@@ -65,18 +61,12 @@ InputError cannot_read(const std::filesystem::path& path) {
 
 void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
   const std::filesystem::path partial = write_partial(path, fmt::format(".partial.{}", ::getpid()), text);
-  if (std::rename(partial.c_str(), path.c_str()) == 0) return;
-  const RunError error = cannot_write(path);
-  remove_if_there(partial);
-  throw error;
+  if (std::rename(partial.c_str(), path.c_str()) != 0) give_up(path, partial);
 }
 
 void write_text_durably(const std::filesystem::path& path, const std::string& text) {
   const std::filesystem::path partial = write_partial(path, ".partial", text);
-  if (put_on_disk(partial, path)) return;
-  const RunError error = cannot_write(path);
-  remove_if_there(partial);
-  throw error;
+  if (!put_on_disk(partial, path)) give_up(path, partial);
 }
 
 bool put_on_disk(const std::filesystem::path& path) { return sync(path); }
