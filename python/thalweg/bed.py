@@ -102,6 +102,11 @@ def measured_shields_number(run, start, stop):
             f"{run.folder}: analysis.bed_surface has no Shields number where neither a slope nor a held mean velocity nor "
             "a moving top drives the flow."
         )
+    if "shields_number" not in run.series and run.driven_by_slope and not is_obstructed(run):
+        raise RunFolderError(
+            f"{run.folder}: a restart at {run.driven_alike_since:g} {units_of(run).named('s')} changed what drives the"
+            " flow; choose times after it, or add analysis.bed_surface to the case, which measures the Shields number."
+        )
     if "shields_number" not in run.series:
         raise RunFolderError(
             f"{run.folder}: the Shields number of this flow does not follow from its slope alone, but from forces that "
@@ -148,13 +153,18 @@ def share_of_gravity(run, start=-np.inf, stop=np.inf):
     return (impulse(last) - impulse(first)) / (last - first) if last > first else 1.0
 
 
+def follows_from_slope(run, start=-np.inf):
+    """Whether the stress on the bed from a time (s) on is that of the slope in the case."""
+    return run.driven_by_slope and not is_obstructed(run) and run.driven_alike_since <= start
+
+
 def shields_number(run, surface, start=-np.inf, stop=np.inf, by_solid_fraction=True):
-    """Shields number of a run whose bed ends at the height `surface` (m): where a slope drives the flow by depth and
-    slope, or by hydraulic radius beside side walls, with the mean gravity between two times (s); else, and where
-    obstacles stand in the flow, the mean between them of what the run measured for the surface by solid fraction, and
-    for another one as much more as its hydraulic radius is larger. RunFolderError where that cannot be said, because
-    the top drags on the flow as well."""
-    if run.driven_by_slope and not is_obstructed(run):
+    """Shields number of a run whose bed ends at the height `surface` (m), negative towards -x: where a slope drives the
+    flow by depth and slope, or by hydraulic radius beside side walls, with the mean gravity between two times (s); else,
+    where obstacles stand in the flow, and where a restart after the first time changed gravity, the mean between them of
+    what the run measured for the surface by solid fraction, and for another one as much more as its hydraulic radius is
+    larger. RunFolderError where that cannot be said, because the top drags on the flow as well."""
+    if follows_from_slope(run, start):
         sine = run.gravity[0] / np.linalg.norm(run.gravity)
         return share_of_gravity(run, start, stop) * shields_of(
             np.tan(np.arcsin(sine)), run.size[2] - surface, run.diameter, run.density_ratio, run.size[1], run.side_walls

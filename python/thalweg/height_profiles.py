@@ -3,7 +3,7 @@ their figure, after fig. 7(a) of Zhang et al. (2022)."""
 import matplotlib.pyplot as plt
 import numpy as np
 
-from thalweg.bed import bed_height, is_obstructed, more_than_the_bed, surface_by_solid_fraction
+from thalweg.bed import bed_height, follows_from_slope, more_than_the_bed, surface_by_solid_fraction
 from thalweg.drawing import name_above
 from thalweg.errors import RunFolderError
 from thalweg.layers import layer_profiles
@@ -101,7 +101,8 @@ def stresses(run):
     solid = component(grains, "contact_stress", "xz") + component(grains, "kinetic_stress", "xz")
     found = [("solid: contacts and motion", z, solid)]
     # Side walls and obstacles would take a share, and of several densities the profiles have no mean by layers.
-    if run.driven_by_slope and not run.side_walls and not is_obstructed(run) and run.has_one_density:
+    alone = follows_from_slope(run, run.averaged_from("grain_profiles")) and not run.side_walls
+    if alone and run.has_one_density:
         driving = driving_stress(run, z, fraction)
         found.append(("driving", z, driving))
         if run.case.get("fluid"):
@@ -119,8 +120,9 @@ def stresses(run):
 
 def weight_of_water(run):
     """Heights (m) and rho g sin(alpha) (z_top - z) in Pa: what the driving stress is where there are no grains above.
-    None where the slope is not all that drives the flow."""
-    if not run.driven_by_slope or not run.case.get("fluid"):
+    None where the slope is not all that drives the flow, or a restart changed it within the means."""
+    known = run.driven_by_slope and run.driven_alike_since <= run.averaged_from(observer_of_grains(run))
+    if not known or not run.case.get("fluid"):
         return None
     z = np.array([0.0, run.size[2]])
     return z, run.section("fluid")["density"] * run.gravity[0] * (run.size[2] - z)

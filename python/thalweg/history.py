@@ -1,4 +1,5 @@
 """What run.log tells of a run: its sessions, from one start to the next, with their changes and warnings."""
+import math
 import re
 import shlex
 from dataclasses import dataclass, field
@@ -6,6 +7,7 @@ from dataclasses import dataclass, field
 from thalweg.errors import RunFolderError
 
 HEAD = re.compile(r"Thalweg (\S+ \(.*?\)|\S+): ")
+AT = re.compile(r" at (\S+) \S+$")   # the time in Session.origin
 IN_PASSING = re.compile(r"^t (\S+).*?  warning: (.*)$")   # of a progress line
 
 
@@ -54,6 +56,25 @@ def take(line, session):
         session.warnings.append(f"{passing[2]} (at {passing[1]} s)")
     elif line.startswith(("no bed at the end", "not at rest")):
         session.remarks.append(line)
+
+
+def last_change(sessions, keys):
+    """Time (s) of the last restart that changed one of the keys, or a key that begins with it; -inf where none did.
+    What a later restart has left behind does not count."""
+    changed = []
+    for session in sessions:
+        begun = AT.search(session.origin)
+        begun = float(begun[1]) if begun else -math.inf
+        changed = [time for time in changed if time < begun]
+        if any(change.startswith(tuple(keys)) for change in session.changes):
+            changed.append(begun)
+    return changed[-1] if changed else -math.inf
+
+
+def other_case_before(sessions):
+    """Whether a restart changed more of the case than what is written and how long the run goes on."""
+    free = ("run.until", "output.", "name")
+    return any(not change.startswith(free) for session in sessions for change in session.changes)
 
 
 def warnings_of(sessions):

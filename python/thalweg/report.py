@@ -153,15 +153,19 @@ def describe_reach(report):
     if mean is None:
         raise RunFolderError("nothing was measured before the end of the run.")
     known = "" if error is None else f" +- {error:.2g}"
+    few = "" if found.get("q_s_error_holds", 1.0) else " (too few records, the error is larger)"
     report.say(
-        "reach", f"{label} = {mean:.4g}{known}{unit}, mean of all sections and of the run {in_words(times, second)}"
+        "reach",
+        f"{label} = {mean:.4g}{known}{unit}, mean of all sections and of the run {in_words(times, second)}{few}",
     )
     trend = found["bed_level_trend"]
     if trend is not None:
         way = "falling" if trend < 0.0 else "rising"
+        error = found["bed_level_trend_error"]
+        known = "" if error is None else f" +- {error:.2g}"
         report.say(
             "reach", f"bed at {found['bed_level_mean']:.4g} {units.named('m')},"
-            f" {way} by {abs(trend):.2g} {units.named('m/s')}"
+            f" {way} by {abs(trend):.2g}{known} {units.named('m/s')}"
         )
     if found["arrived_grains"] or found["left_grains"]:
         stay = found["residence_time_mean"]
@@ -175,7 +179,7 @@ def describe_surface(report, name, title, surface):
     report.numbers[name] = {"bed_height": surface, "depth": depth}
     place = f"at {surface:.4g} m ({surface / run.diameter:.3g} d), {depth:.4g} m of water above"
     how = "by the forces on the water, as measured"
-    if run.driven_by_slope and not bed.is_obstructed(run):
+    if bed.follows_from_slope(run, report.start):
         how = f"by {'hydraulic radius' if run.side_walls else 'depth'} at slope {run.slope:.4g}"
         share = bed.share_of_gravity(run, report.start, report.stop)
         if share < 1.0:

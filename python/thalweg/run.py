@@ -10,6 +10,7 @@ from thalweg.case_file import read_case
 from thalweg.errors import MissingName, RunFolderError
 from thalweg.frames import FluidFrame, Frames, GrainFrame, SolidFrame
 from thalweg.hdf5 import columns_of, opened
+from thalweg.history import last_change, sessions_of
 from thalweg.records import Events, Probes, Records, parts_of
 from thalweg.tables import read_series
 
@@ -47,8 +48,15 @@ class Run:
 
     @cached_property
     def series(self):
-        """Columns of series.csv by name, `time` (s) among them."""
-        return read_series(self.folder / "series.csv")
+        """Columns of series.csv by name, `time` (s) among them. RunFolderError where there is none."""
+        path = self.folder / "series.csv"
+        every = ((self.case.get("output") or {}).get("series") or {}).get("every")
+        if every == 0 and not path.exists():
+            raise RunFolderError(
+                f"{self.folder}: the case writes no series.csv (output.series.every: 0), from which means, errors and"
+                " figures are made; those of the run itself are in summary.json and profiles.h5."
+            )
+        return read_series(path)
 
     @cached_property
     def grains(self):
@@ -325,18 +333,27 @@ class Run:
 
     @property
     def slope(self):
-        """Tangent of the bed's angle, 1."""
+        """Tangent of the bed's angle, 1; RunFolderError where gravity does not point down."""
         gravity = self.gravity
+        if not gravity[2] < 0.0:
+            raise RunFolderError(f"{self.folder}: gravity does not point down, so there is no slope.")
         return float(gravity[0] / -gravity[2])
+
+    @cached_property
+    def driven_alike_since(self):
+        """Time (s) of the last restart that changed gravity or the density of the fluid, as run.log tells; -inf where
+        none did."""
+        return last_change(sessions_of(self.folder), ("gravity.", "fluid.density", "run.ramp"))
 
     @property
     def driven_by_slope(self):
-        """Whether gravity along the bed, and it alone, drives the fluid: no mean velocity is held, no top moves or
-        drags, no side wall moves along x, no face is open and no wall ends the box along x."""
+        """Whether gravity along the bed, downhill along x or -x, and it alone, drives the fluid: no mean velocity is
+        held, no top moves or drags, no side wall moves along x, no face is open and no wall ends the box along x."""
         steered = bool((self.case.get("fluid") or {}).get("mean_velocity"))
         open_faces = any(face in ("velocity_inlet", "pressure_outlet") for axis in "xyz" for face in self.faces(axis))
         top_is_free = self.faces("z")[1] in ("free_slip", "periodic", None)
-        return bool(self.gravity[0] > 0.0 and self.periodic[0] and not steered and not open_faces and top_is_free
+        inclined = self.gravity[0] != 0.0 and self.gravity[2] < 0.0
+        return bool(inclined and self.periodic[0] and not steered and not open_faces and top_is_free
                     and not self.side_walls_move)
 
 

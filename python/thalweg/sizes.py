@@ -32,8 +32,15 @@ class Sizes:
 
     @property
     def armouring_ratio(self):
-        """d50 of the surface over that of the bed."""
-        return self.surface_d50 / self.bed_d50
+        """d50 of the surface over that of the bed: the mean of the ratios, or, as long as the run goes on, that of their
+        means."""
+        mean = ((self.run.summary or {}).get("fractional_transport") or {}).get("armouring_ratio_mean")
+        return self.surface_d50 / self.bed_d50 if mean is None else mean
+
+    @property
+    def downstream(self):
+        """1, or -1 where more grains go along -x."""
+        return -1.0 if np.sum(self.q_s) < 0.0 else 1.0
 
     def q_star_by_bed(self):
         """q* of each class by its share of the bed, as Parker and Klingeman (1982), and its error; None without a
@@ -57,9 +64,9 @@ class Sizes:
             return None
 
     def shear_velocity(self):
-        """m/s, of the mean stress on the bed; None where it is not known."""
+        """m/s, of the mean stress on the bed, whichever way it acts; None where it is not known."""
         stress = self.bed_stress()
-        return math.sqrt(stress / self.run.section("fluid")["density"]) if stress and stress > 0.0 else None
+        return math.sqrt(abs(stress) / self.run.section("fluid")["density"]) if stress else None
 
     def w_star(self):
         """W*_i = (s - 1) g q_si / (F_i u_*^3) of each class, F_i its share of the surface (Wilcock and Crowe 2003, eq.
@@ -83,7 +90,7 @@ class Sizes:
         load = (
             text(self.load_d50)
             if math.isfinite(self.load_d50)
-            else "unknown, as the net transport is not downstream"
+            else "unknown, as there is no net transport"
         )
         return (
             f"d50 of the bed {text(self.bed_d50)}, of its surface {text(self.surface_d50)}, of the load {load}; armouring"

@@ -25,8 +25,9 @@ DILUTE = 0.02                 # solid fraction below which too few grains pass f
 
 @dataclass
 class Bed:
-    """Layers of a resolved run; height in diameters over the surface, velocities in m/s along x, stresses in Pa
-    (xz)."""
+    """Layers of a resolved run; height in diameters over the surface, velocities in m/s and stresses in Pa (xz) along
+    `axis`, downstream."""
+    axis: str                         # "x" or "-x"
     height: np.ndarray
     solid_fraction: np.ndarray
     grain_velocity: np.ndarray
@@ -52,8 +53,10 @@ def resolved_bed(run):
     state = flow_state(phi, stress, np.gradient(velocity, z), diameter, run.density_ratio * float(fluid["density"]),
                        viscosity)
     of_fluid = sum(component(layers, name, "xz") for name in ("viscous_stress", "subgrid_stress", "reynolds_stress"))
-    return Bed((z - surface_by_solid_fraction(z, phi)) / diameter, phi, velocity, layers["fluid_velocity"][:, 0],
-               layers["granular_temperature"], stress[:, 0, 2], of_fluid, state, layers["drag_function"],
+    of_water = layers["fluid_velocity"][:, 0]
+    axis, way = ("-x", -1.0) if np.nansum((1.0 - phi) * of_water) < 0.0 else ("x", 1.0)
+    return Bed(axis, (z - surface_by_solid_fraction(z, phi)) / diameter, phi, way * velocity, way * of_water,
+               layers["granular_temperature"], way * stress[:, 0, 2], way * of_fluid, state, layers["drag_function"],
                layers["drag_reynolds_number"])
 
 
@@ -110,7 +113,7 @@ def draw_profiles(axes, bed, column):
     top = min(bed.height[-1], 6.0)
     fraction.set(xlabel="solid fraction [1]", ylim=(-4.0, top), ylabel="height over the bed surface [d]")
     velocity.set(
-        xlabel="velocity [m/s]", ylim=(-4.0, top), xlim=(-0.02, 1.05 * np.interp(top, bed.height, bed.fluid_velocity))
+        xlabel=f"velocity along {bed.axis} [m/s]", ylim=(-4.0, top), xlim=(-0.02, 1.05 * np.interp(top, bed.height, bed.fluid_velocity))
     )
     stress.set(xlabel="shear stress [Pa]", ylim=(-4.0, top))
     velocity.legend(frameon=False, fontsize=8)

@@ -30,19 +30,22 @@ def law_of_the_wall(distance, friction_velocity, viscosity):
 
 def expected_speeds(run):
     """Speeds between side walls that carry all of the water's weight along the slope, far above the bed (Zhang et al.
-    2022, app. A): friction velocity sqrt(g_x W/2). None where anything else drives the water or holds it (a mean
-    velocity, an inlet, a top that moves or drags, solids, walls that move or slip by a length), and where that flow
-    would not be turbulent."""
+    2022, app. A): friction velocity sqrt(|g_x| W/2), along x or -x as the slope. None where anything else drives the
+    water or holds it (a mean velocity, an inlet, a top that moves or drags, solids, walls that move or slip by a
+    length), where a restart changed gravity within the means of the fluid, and where that flow would not be
+    turbulent."""
     smooth_walls = all(face in SMOOTH_WALLS for face in run.faces("y"))
     if not smooth_walls or not run.driven_by_slope or run.case.get("solids"):
         return None
+    if run.driven_alike_since > run.averaged_from("fluid_statistics"):
+        return None
     half, viscosity = 0.5 * run.size[1], run.case["fluid"]["kinematic_viscosity"]
-    friction_velocity = np.sqrt(run.gravity[0] * half)
+    way, friction_velocity = np.sign(run.gravity[0]), np.sqrt(abs(run.gravity[0]) * half)
     if friction_velocity * half / viscosity < SMALLEST_HALF_WIDTH:
         return None
     across = (np.arange(1000) + 0.5) / 1000 * half
-    return Speeds(float(np.mean(law_of_the_wall(across, friction_velocity, viscosity))),
-                  float(law_of_the_wall(half, friction_velocity, viscosity)))
+    return Speeds(float(way * np.mean(law_of_the_wall(across, friction_velocity, viscosity))),
+                  float(way * law_of_the_wall(half, friction_velocity, viscosity)))
 
 
 def measured_speeds(run, above):

@@ -387,6 +387,25 @@ class Layers(made_up.MadeUpFolder):
         for start, stop, share in ((0, 2, 0.5), (0, 1, 3 / 16), (0, np.inf, 0.75), (2, 4, 1.0), (-np.inf, 2, 0.5)):
             self.assertAlmostEqual(bed.shields_number(run, 10 * D, start, stop) / full, share, 12)
 
+    def test_the_shields_number_after_a_restart_with_another_slope(self):
+        log = "Thalweg 0.1.0 (aaa): A\nshape\nThalweg 0.1.0 (aaa): A\nshape\nresuming from a/step_5.h5 at 2 s\n"
+        (self.folder / "run.log").write_text(log + "changed since then: gravity.slope: 0.02 -> 0.0748\n")
+        (self.folder / "series.csv").write_text("time [s],shields_number [1]\n0,0.03\n1,0.03\n2,0.03\n3,0.1\n4,0.1\n")
+        run = thalweg.Run(self.folder)
+        by_depth = bed.shields_of(0.0748, SIZE[2] - 10 * D, D, 2.55, SIZE[1])
+        self.assertAlmostEqual(bed.shields_number(run, 10 * D, 2.0, 4.0), by_depth, 12)
+        self.assertAlmostEqual(bed.shields_number(run, 10 * D, 0.0, 2.0), 0.03, 12)
+        self.assertAlmostEqual(bed.shields_number(run, 10 * D, 1.0, 4.0), 0.065, 12)
+        (self.folder / "series.csv").write_text("time [s]\n0\n4\n")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "restart at 2 s changed what drives the flow"):
+            bed.shields_number(thalweg.Run(self.folder), 10 * D, 0.0, 4.0)
+
+    def test_the_shields_number_of_a_slope_to_the_left(self):
+        plain = bed.shields_number(thalweg.Run(self.folder), 10 * D)
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace("slope: 0.0748", "slope: -0.0748"))
+        self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), 10 * D), -plain, 12)
+
     def test_rows_without_a_number_do_not_count(self):
         """As of a bed that reached the top of the box for a moment."""
         (self.folder / "series.csv").write_text("time [s],q_star [1],shields_number [1]\n"

@@ -1,6 +1,7 @@
 """thalweg report makes one page of a run of every kind that needs nothing beside it, and says what the run says."""
 import html.parser
 import json
+import math
 import os
 import pathlib
 import re
@@ -19,7 +20,7 @@ import made_up_profiles  # noqa: E402
 import made_up_run  # noqa: E402
 import thalweg  # noqa: E402
 from thalweg.figures import overview  # noqa: E402
-from thalweg.history import sessions_of, settings_in, warnings_of  # noqa: E402
+from thalweg.history import Session, last_change, sessions_of, settings_in, warnings_of  # noqa: E402
 from thalweg.page.sections import page_of  # noqa: E402
 
 LOG = """Thalweg 0.1.0 (aaa): Made up
@@ -131,6 +132,14 @@ class Report(unittest.TestCase):
             self.assertIn("host node7 compiler GNU 12.2.0 solids.0.stl ../sill.stl, SHA-256 ab12", page.text)
             self.assertIn("mpirun -n 2 thalweg run", page.text)
             self.assertEqual(re.search(r"--out \S+ --resume", page.text) is not None, not finished)
+
+    def test_a_run_whose_case_was_changed_is_not_repeated_by_its_last_case(self):
+        self.assertIn("the same run once more", self.page().text)
+        with open(self.folder / "run.log", "a") as log:
+            log.write("changed since then: contact.friction: 0.3 -> 0.5\n")
+        text = self.page().text
+        self.assertNotIn("the same run once more", text)
+        self.assertIn("this is another run", text)
 
     def test_files_that_were_saved_on_windows(self):
         """With a byte-order mark and other ends of lines they say the same."""
@@ -266,6 +275,16 @@ class History(unittest.TestCase):
         self.assertTrue(first.outcome.startswith("not finished, stopped by SIGTERM"))
         self.assertEqual(second.outcome, "")
         self.assertEqual(warnings_of([first, second]), ["The step is <long>.", "3 grains overlap (at 0.5 s)"])
+
+    def test_a_change_that_a_later_restart_left_behind_does_not_count(self):
+        def session(time, *changes):
+            return Session("0.1.0", origin=f"run/checkpoints/step_1.h5 at {time} s" if time else "", changes=list(changes))
+        slope = "gravity.slope: 0.1 -> 0.2"
+        course = [session(None), session(2, slope), session(3, "run.until: 3 -> 4")]
+        self.assertEqual(last_change(course, ("gravity.",)), 2.0)
+        self.assertEqual(last_change([*course, session(1)], ("gravity.",)), -math.inf)
+        self.assertEqual(last_change([*course, session(1), session(1.5, slope)], ("gravity.",)), 1.5)
+        self.assertEqual(last_change([*course, session(None)], ("gravity.",)), -math.inf)   # from the start again
 
     def test_settings(self):
         self.assertEqual(

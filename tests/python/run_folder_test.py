@@ -174,6 +174,22 @@ class RunFolder(made_up.MadeUpFolder):
         self.assertFalse(self.with_case("x: periodic", "x: no_slip").driven_by_slope)   # a closed tank
         self.assertTrue(self.with_case("x: no_slip", "x: periodic").driven_by_slope)
         self.assertFalse(self.with_case("slope: 0.0748", "slope: 0").driven_by_slope)
+        upstream = self.with_case("slope: 0", "slope: -0.02")
+        self.assertTrue(upstream.driven_by_slope)
+        self.assertAlmostEqual(upstream.slope, -0.02, 12)
+
+    def test_gravity_along_the_bed_alone_is_no_slope(self):
+        run = self.with_case("{magnitude: 9.8, slope: 0.0748}", "{vector: [0.5, 0, 0]}")
+        self.assertFalse(run.driven_by_slope)
+        with self.assertRaisesRegex(thalweg.RunFolderError, "no slope"):
+            run.slope
+
+    def test_a_run_without_a_series_says_why(self):
+        (self.folder / "series.csv").unlink(missing_ok=True)
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text() + "output: {series: {every: 0}}\n")
+        with self.assertRaisesRegex(thalweg.RunFolderError, "output.series.every: 0"):
+            thalweg.Run(self.folder).series
 
     def test_side_walls_are_counted(self):
         for faces, count in (

@@ -88,6 +88,22 @@ class SizesTest(made_up.MadeUpFolder):
         np.testing.assert_allclose([line.get_ydata()[1] for line in right.lines], [50.0, 20.0, 75.0])
         plt.close(drawn)
 
+    def test_a_flow_to_the_left(self):
+        (self.folder / "summary.json").write_text(json.dumps({"bed_surface": {"bed_stress_mean": -10.0}}))
+        self.write(q_s=[-3e-6, -1e-6], q_star=[-0.04, -0.01])
+        self.assertAlmostEqual(Sizes(self.run_()).shear_velocity(), 0.1, 12)
+        drawn = figure.figure_of(self.run_())
+        self.assertTrue(any(np.allclose(line.get_ydata(), [0.04, 0.01]) for line in drawn.axes[0].lines))
+        plt.close(drawn)
+
+    def test_an_error_larger_than_the_rate_ends_above_it(self):
+        self.write(q_star=[0.1, 0.01], q_star_error=[0.3, 0.002])
+        drawn = figure.figure_of(self.run_())
+        ends = [line.get_ydata() for line in drawn.axes[0].lines]   # of bars and caps
+        self.assertTrue(any(len(y) and np.isclose(y[0], 0.4) for y in ends))
+        self.assertTrue(any(len(y) and np.isclose(y[0], 0.001) for y in ends))
+        plt.close(drawn)
+
     def test_nothing_moves(self):
         still = [0.0, 0.0]
         self.write(q_s=still, q_star=still, q_s_error=still, q_star_error=still, load_share=[np.nan, np.nan])

@@ -84,6 +84,21 @@ class TwoPhases(MadeUpFolder):
         rate = bed.grain_velocity / (DECAY * DIAMETER) * np.sinh(step) / step
         np.testing.assert_allclose(bed.state.shear_rate[5:35], rate[5:35], rtol=1e-9)
 
+    def test_a_flow_to_the_left_is_the_mirror_image(self):
+        right = two_phases.resolved_bed(Run(self.folder))
+        with h5py.File(self.folder / "profiles.h5", "a") as file:
+            for name in ("grain_velocity", "fluid_velocity"):
+                file["stress_balance"][name][...] *= [-1.0, 1.0, 1.0]
+            for name, columns in (("contact_stress", [2, 6]), ("reynolds_stress", [4])):
+                values = file["stress_balance"][name][...]
+                values[:, columns] *= -1.0
+                file["stress_balance"][name][...] = values
+        left = two_phases.resolved_bed(Run(self.folder))
+        self.assertEqual((right.axis, left.axis), ("x", "-x"))
+        for name in ("grain_velocity", "fluid_velocity", "solid_stress", "fluid_stress"):
+            np.testing.assert_allclose(getattr(left, name), getattr(right, name), err_msg=name)
+        np.testing.assert_allclose(left.state.friction, right.state.friction)
+
     def test_decay_length(self):
         bed = two_phases.resolved_bed(Run(self.folder))
         self.assertAlmostEqual(two_phases.decay_length(bed.height, bed.grain_velocity), DECAY, places=6)

@@ -74,8 +74,9 @@ def measured(folder):
 
 
 def batchelor(phi):
-    """Viscosity of a dilute suspension over that of the fluid, in simple shear; G. K. Batchelor and J. T. Green, J.
-    Fluid Mech. 56 (1972) 401; to first order that of Einstein."""
+    """Viscosity of a dilute suspension over that of the fluid; G. K. Batchelor and J. T. Green, J. Fluid Mech. 56 (1972)
+    401; to first order that of Einstein. 7.6 is for a pure straining motion; in simple shear it depends on the pairs
+    that orbit each other, and counts for less than 1 % at the fractions compared."""
     return 1.0 + 2.5 * phi + 7.6 * phi**2
 
 

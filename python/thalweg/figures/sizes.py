@@ -24,9 +24,11 @@ def draw_rates(axes, sizes, units):
         (sizes.q_star_by_bed(), "by share of the bed $f_i$", {"mfc": "white", "color": BED}),
         ((sizes.q_star, sizes.q_star_error), "by share of the surface $F_i$", {"color": SURFACE}),
     ):
+        rate = sizes.downstream * rate
         shown = np.isfinite(rate) & (rate > 0.0)
-        error = np.minimum(np.nan_to_num(error), 0.99 * np.where(shown, rate, 1.0))
-        axes.errorbar(place[shown], rate[shown], error[shown], fmt="o-", lw=0.8, capsize=2, label=label, **style)
+        above = np.nan_to_num(error)[shown]
+        below = np.minimum(above, 0.99 * rate[shown])   # that the axis can show
+        axes.errorbar(place[shown], rate[shown], np.array([below, above]), fmt="o-", lw=0.8, capsize=2, label=label, **style)
         drawn += shown.sum()
     axes.set(
         xlabel="$d_i\\,/\\,d_{50}$ of the bed", ylabel=r"$q^*_i = q_{si}\,/\,(F_i \sqrt{(s_i-1)\,g\,d_i^3})$",

@@ -9,7 +9,7 @@ from thalweg.errors import RunFolderError
 from thalweg.figures import fluid_profiles, overview, reach, sizes, transport_rate
 from thalweg.page import html
 from thalweg.page.figures import series_figure
-from thalweg.history import command_of, sessions_of, settings_in, warnings_of
+from thalweg.history import command_of, other_case_before, sessions_of, settings_in, warnings_of
 from thalweg.sizes import Sizes
 from thalweg.sizes import measured as measured_by_size
 from thalweg.transport import sentence_of_column, state_of_column, transport
@@ -31,7 +31,7 @@ def page_of(run):
     parts = [
         heading(run, sessions), findings(run), pictures(run), transport_section(run), size_section(run),
         reach_section(run), profiles(run), course(run), warning_section(sessions), budget(run), case_section(run, sessions), provenance(run, sessions),
-        repetition(run), footer(run),
+        repetition(run, sessions), footer(run),
     ]
     return html.document(f"{run.name} - Thalweg", "\n".join(part for part in parts if part))
 
@@ -330,11 +330,13 @@ def facts(found):
     ]
 
 
-def repetition(run):
+def repetition(run, sessions):
     summary, folder = run.summary or {}, shlex.quote(str(run.folder))
     ranks = summary.get("ranks", 1)
     start = f"mpirun -n {ranks} " if ranks > 1 else ""
-    lines = ["# the same run once more, in a new folder, from the case as it was run",
+    other = other_case_before(sessions)
+    first = "the last case from its start" if other else "the same run once more"
+    lines = [f"# {first}, in a new folder, from the case as it was run",
              f"{start}thalweg run {folder}/case.yaml --out NEW_FOLDER"]
     if not summary.get("finished"):
         lines += [
@@ -347,6 +349,11 @@ def repetition(run):
         " and surfaces that the case names, with paths from its folder, are needed as well, and the run or checkpoint"
         " that it begins from: move them with the folder."
     )
+    if other:
+        words = (
+            "The case was changed where the run went on, so that this is another run. To repeat this one, run each"
+            " case_until_step_N.yaml of the folder to the time of its change, and go on with the next by --resume. "
+        ) + words
     return html.section("How to repeat it", html.preformatted("\n".join(lines)), html.paragraph(words))
 
 
