@@ -43,6 +43,8 @@ void Reach::add_means(std::vector<Diagnostic>& results) const {
   const double error = mean_q_s_.error().of_mean, variation = variation_of(q_s_, sections_.first());
   results.push_back({"q_s_mean", "m^2/s", mean_q_s_.mean()});
   results.push_back({"q_s_error", "m^2/s", error});
+  results.push_back({"q_s_independent", "1", mean_q_s_.error().independent});
+  results.push_back({"q_s_error_holds", "1", mean_q_s_.error().holds() ? 1.0 : 0.0});
   results.push_back({"q_s_variation", "m^2/s", variation});
   if (scales_.have_q_star()) {
     results.push_back({"q_star_mean", "1", mean_q_s_.mean() / scales_.flux()});
@@ -87,9 +89,10 @@ std::vector<std::string> Reach::remarks() const {
   const double unit = scales_.have_q_star() ? scales_.flux() : 1.0;
   const char* const name = scales_.have_q_star() ? "q*" : "q_s";
   const std::string transport =
-      fmt::format("reach: {} = {}{} through {} sections, with a deviation of {:.2g} along x", name,
+      fmt::format("reach: {} = {}{} through {} sections, with a deviation of {:.2g} along x{}", name,
                   with_error(mean_q_s_, unit), scales_.have_q_star() ? "" : " m^2/s",
-                  sections_.size() - sections_.first(), variation_of(q_s_, sections_.first()) / unit);
+                  sections_.size() - sections_.first(), variation_of(q_s_, sections_.first()) / unit,
+                  mean_q_s_.error().holds() ? "" : "; too few records, the error is larger");
   const double trend = bed_trend(mean_level_);
   if (std::isnan(trend)) return {transport};
   return {transport, fmt::format("reach: the level of the bed changes by {:+.3g} +- {:.2g} m/s", trend,

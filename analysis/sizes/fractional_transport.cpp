@@ -32,6 +32,9 @@ double diameter_of_volume(double volume, double disk_thickness) {
 
 double share_of(double part, double whole) { return whole > 0.0 ? part / whole : not_a_number; }
 
+// Not a number where no free grain was seen at the surface.
+double mean_of(const CorrelatedMean& mean) { return mean.count() > 0 ? mean.mean() : not_a_number; }
+
 double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 }  // namespace
@@ -142,17 +145,29 @@ void FractionalTransport::add(const Snapshot& /*snapshot*/) {
     load_sums_[b] += load_[b];
   }
   if (std::isfinite(latest_[0])) surface_d50_.add(latest_[0]);
+  if (const double ratio = latest_[0] / latest_bed_d50(); std::isfinite(ratio)) armouring_.add(ratio);
   moving_surface_sum_[0] += latest_[1];
 }
 
-double FractionalTransport::bed_d50() const { return median_diameter(bed_volume_, bed_diameter_); }
+double FractionalTransport::latest_bed_d50() const { return median_diameter(bed_volume_, bed_diameter_); }
 
-double FractionalTransport::load_d50() const {
+// Mean diameters of the bins, m; 0 where there were no grains.
+std::vector<double> FractionalTransport::mean_diameters() const {
   std::vector<double> diameters;
-  for (std::size_t b = 0; b < load_sums_.size(); ++b)
+  for (std::size_t b = 0; b < volume_sums_.size(); ++b)
     diameters.push_back(volume_sums_[b] > 0.0 ? std::exp(size_sums_[b] / volume_sums_[b]) : 0.0);
-  const double load = median_diameter(load_sums_, diameters);
-  return load > 0.0 ? load : not_a_number;
+  return diameters;
+}
+
+double FractionalTransport::bed_d50() const { return median_diameter(volume_sums_, mean_diameters()); }
+
+// Along x or -x, whichever way more goes.
+double FractionalTransport::load_d50() const {
+  std::vector<double> downstream = load_sums_;
+  if (sum_of(downstream) < 0.0)
+    for (double& load : downstream) load = -load;
+  const double d50 = median_diameter(downstream, mean_diameters());
+  return d50 > 0.0 ? d50 : not_a_number;
 }
 
 struct FractionalTransport::Findings {
@@ -162,9 +177,9 @@ struct FractionalTransport::Findings {
 
 FractionalTransport::Findings FractionalTransport::findings() const {
   Findings found;
-  const std::vector<double> latest = classes_.by_class(bed_volume_), size = classes_.by_class(size_sums_);
+  const std::vector<double> size = classes_.by_class(size_sums_);
   const std::vector<double> volume = classes_.by_class(volume_sums_), mass = classes_.by_class(mass_sums_);
-  const double whole = sum_of(latest);
+  const double whole = sum_of(volume);
   double all = 0.0;
   for (const ClassMeans& means : means_) all += means.q_s.mean();
   for (std::size_t c = 0; c < classes_.count(); ++c) {
@@ -172,10 +187,10 @@ FractionalTransport::Findings FractionalTransport::findings() const {
     const double q_s = means.q_s.mean(), error = means.q_s.error().of_mean, share = means.surface_share.mean();
     found.diameter.push_back(volume[c] > 0.0 ? std::exp(size[c] / volume[c]) : classes_.middle(c));
     found.density.push_back(share_of(mass[c], volume[c]));
-    found.bed_share.push_back(share_of(latest[c], whole));
+    found.bed_share.push_back(share_of(volume[c], whole));
     found.surface_share.push_back(share);
     found.surface_share_error.push_back(means.surface_share.error().of_mean);
-    found.load_share.push_back(share_of(q_s, all));
+    found.load_share.push_back(share_of(all < 0.0 ? -q_s : q_s, std::abs(all)));
     found.q_s.push_back(q_s);
     found.q_s_error.push_back(error);
     TransportScales scales = scales_;
@@ -191,7 +206,7 @@ FractionalTransport::Findings FractionalTransport::findings() const {
 
 std::vector<Diagnostic> FractionalTransport::diagnostics() const {
   std::vector<Diagnostic> diagnostics{{"surface_d50", "m", latest_[0]},
-                                      {"armouring_ratio", "1", latest_[0] / bed_d50()},
+                                      {"armouring_ratio", "1", latest_[0] / latest_bed_d50()},
                                       {"moving_surface_share", "1", latest_[1]}};
   for (std::size_t c = 0; c < classes_.count(); ++c) {
     const std::string name = fmt::format("class_{}_", c);
@@ -204,14 +219,15 @@ std::vector<Diagnostic> FractionalTransport::diagnostics() const {
 
 std::vector<Diagnostic> FractionalTransport::results() const {
   const Findings found = findings();
-  const double bed = bed_d50(), surface = surface_d50(), error = surface_d50_.error().of_mean;
+  const CorrelatedMean::Error error = surface_d50_.error();
   std::vector<Diagnostic> results{
-      {"bed_d50", "m", bed},
-      {"surface_d50_mean", "m", surface},
-      {"surface_d50_error", "m", error},
+      {"bed_d50", "m", bed_d50()},
+      {"surface_d50_mean", "m", mean_of(surface_d50_)},
+      {"surface_d50_error", "m", error.of_mean},
       {"load_d50", "m", load_d50()},
-      {"armouring_ratio_mean", "1", surface / bed},
-      {"armouring_ratio_error", "1", error / bed},
+      {"armouring_ratio_mean", "1", mean_of(armouring_)},
+      {"armouring_ratio_error", "1", armouring_.error().of_mean},
+      {"errors_hold", "1", error.holds() ? 1.0 : 0.0},
       {"moving_surface_share_mean", "1", moving_surface_sum_[0] / static_cast<double>(measurements())}};
   for (std::size_t c = 0; c < classes_.count(); ++c) {
     const auto add = [&, name = fmt::format("class_{}_", c)](const char* what, const char* unit, double value) {
@@ -240,13 +256,13 @@ std::vector<std::string> FractionalTransport::remarks() const {
   if (measurements() == 0) return {};
   const double bed = bed_d50(), load = load_d50();
   if (!(bed > 0.0)) return {"sizes: there is no bed of free grains"};
-  const std::string of_load =
-      load > 0.0 ? fmt::format("{:.4g} m", load) : "unknown, as the net transport is not downstream";
+  const std::string of_load = load > 0.0 ? fmt::format("{:.4g} m", load) : "unknown, as there is no net transport";
   if (surface_d50_.count() == 0)
     return {
         fmt::format("sizes: d50 of the bed {:.4g} m, of the load {}; no free grain is at its surface", bed, of_load)};
-  return {fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}", bed,
-                      with_error(surface_d50_, 1.0), of_load, with_error(surface_d50_, bed))};
+  return {fmt::format("sizes: d50 of the bed {:.4g} m, of its surface {} m, of the load {}; armouring ratio {}{}", bed,
+                      with_error(surface_d50_, 1.0), of_load, with_error(armouring_, 1.0),
+                      surface_d50_.error().holds() ? "" : "; too few measurements, the errors are larger")};
 }
 
 std::vector<Profile> FractionalTransport::profiles() const {
@@ -254,7 +270,7 @@ std::vector<Profile> FractionalTransport::profiles() const {
   const std::uint64_t classes = classes_.count();
   std::vector<Profile> profiles{
       {"edges", "m", {"edges"}, {}, {classes + 1}, classes_.edges()},
-      {"d50", "m", {}, {"bed", "surface", "load"}, {3}, {bed_d50(), surface_d50(), load_d50()}}};
+      {"d50", "m", {}, {"bed", "surface", "load"}, {3}, {bed_d50(), mean_of(surface_d50_), load_d50()}}};
   const auto add = [&](const char* name, const char* unit, const std::vector<double>& values) {
     profiles.push_back({name, unit, {"diameter"}, {}, {classes}, values});
   };
@@ -298,7 +314,8 @@ bool FractionalTransport::load_sums(ArchiveReader& archive, const std::string& g
   std::uint64_t size = 0;
   for (const std::vector<double>* some : sums_of(*this)) size += some->size();
   const auto sums = read_whole_if_alike<double>(archive, group + "/sums", {size});
-  if (!sums) return false;
+  const std::size_t means = means_of(*this).size();
+  if (!sums || !archive.has(fmt::format("{}/batches_{}", group, means - 1))) return false;
   load_count(archive, group);
   auto next = sums->begin();
   for (std::vector<double>* some : sums_of(*this)) {
@@ -310,22 +327,28 @@ bool FractionalTransport::load_sums(ArchiveReader& archive, const std::string& g
   return true;
 }
 
+static RealKey key_of_edges() {
+  return {.unit = "m",
+          .meaning =
+              "of the size classes, in rising order, covering all free grains; default: the sieves of "
+              "the case, a class for each of up to ten sizes, or classes of 1/2 phi",
+          .above = 0.0,
+          .examples = {2e-3, 4e-3, 8e-3}};
+}
+
+static void require_rising_edges(SectionVisitor& visit, const std::vector<double>& edges) {
+  visit.require(edges.size() >= 2 && edges.size() <= most_classes + 1, "edges",
+                fmt::format("give the edges of 1 to {} classes in m, one more than classes", most_classes));
+  visit.require(std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()), "edges", "the edges must rise");
+}
+
 void describe(SectionVisitor& visit, FractionalTransportKeys& keys) {
   describe_from(visit, keys.from);
   visit.real("every", keys.every,
              {.unit = "s", .meaning = "between measurements; 0: with the rows of series.csv", .at_least = 0.0});
-  visit.real_list("edges", keys.edges,
-                  {.unit = "m",
-                   .meaning = "of the size classes, in rising order, covering all free grains; default: the sieves of "
-                              "the case, a class for each of up to ten sizes, or classes of 1/2 phi",
-                   .above = 0.0,
-                   .examples = {2e-3, 4e-3, 8e-3}});
+  visit.real_list("edges", keys.edges, key_of_edges());
   describe_moving_speed(visit, keys.moving_speed);
-  if (!visit.reading() || keys.edges.empty()) return;
-  visit.require(keys.edges.size() >= 2 && keys.edges.size() <= most_classes + 1, "edges",
-                fmt::format("give the edges of 1 to {} classes in m, one more than classes", most_classes));
-  visit.require(std::is_sorted(keys.edges.begin(), keys.edges.end(), std::less_equal<>()), "edges",
-                "the edges must rise");
+  if (visit.reading() && !keys.edges.empty()) require_rising_edges(visit, keys.edges);
 }
 
 void check(const FractionalTransportKeys& keys, const RunContext& run) {

@@ -65,16 +65,17 @@ public:
   // and for each class, 0 the finest, class_0_q_s (m^2/s), class_0_surface_share (1), class_0_moving_grains (1).
   std::vector<Diagnostic> diagnostics() const override;
 
-  // bed_d50, surface_d50_mean and _error, load_d50 (m), armouring_ratio_mean and _error, moving_surface_share_mean; for
+  // bed_d50, surface_d50_mean and _error, load_d50 (m), armouring_ratio_mean and _error, errors_hold (1; 0: too few
+  // measurements of the surface, errors are underestimates), moving_surface_share_mean; for
   // each class class_0_diameter (m), _bed_share, _surface_share_mean and _error, _load_share, _q_s_mean and _error
   // (m^2/s), in a fluid _q_star_mean and _error (that of q_s), _moving_grains_mean; mean_from (s), measurements; the
   // latest diagnostics. Not a number as long as nothing was measured, for q* of a class that is not at the surface, and
-  // for shares and d50 of a load that is not positive.
+  // for shares and d50 of a load that is nothing on the whole. Bed and load are those of all measurements.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;  // the three median sizes and the armouring ratio
 
   // edges (m), one more than classes; d50 (m: of bed, surface, load); by class: diameter (m, of one that had no grains
-  // the geometric mean of its edges) and density (kg/m^3) over the measurements, bed_share of the latest, surface_share
+  // the geometric mean of its edges) and density (kg/m^3) over the measurements, bed_share, surface_share
   // and _error, load_share, q_s and q_s_error (m^2/s), in a fluid q_star and q_star_error, moving_grains and _error.
   std::vector<Profile> profiles() const override;
 
@@ -99,9 +100,9 @@ private:
   std::vector<Grain> sort_grains(const GrainView& grains, std::vector<SeenSphere>& seen) const;
   void measure_transport(const std::vector<Grain>& grains);
   void measure_surface(const std::vector<SeenSphere>& seen);
-  double bed_d50() const;  // m
-  // m, the mean; not a number where no free grain was seen at the surface
-  double surface_d50() const { return surface_d50_.count() > 0 ? surface_d50_.mean() : std::nan(""); }
+  double latest_bed_d50() const;  // m
+  std::vector<double> mean_diameters() const;
+  double bed_d50() const;   // m, of the bed of all measurements
   double load_d50() const;  // m
   // Pointers to what is saved; the latest measurement too, as a row of the series may come before the next.
   static auto sums_of(auto& self) {
@@ -114,6 +115,7 @@ private:
   static auto means_of(auto& self) {
     std::vector all{&self.surface_d50_};
     for (auto& means : self.means_) all.insert(all.end(), {&means.q_s, &means.surface_share, &means.moving_grains});
+    all.push_back(&self.armouring_);
     return all;
   }
 
@@ -133,7 +135,7 @@ private:
   std::vector<double> latest_{0.0, 0.0};  // surface d50 (m), moving share of the surface
   std::vector<double> moving_surface_sum_{0.0};
   std::vector<ClassMeans> means_;
-  CorrelatedMean surface_d50_;
+  CorrelatedMean surface_d50_, armouring_;
 };
 
 }  // namespace thalweg::analysis

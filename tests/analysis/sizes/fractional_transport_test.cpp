@@ -200,11 +200,40 @@ TEST(FractionalTransport, KeepsTheSizeOfAClassThatHasLeft) {
     EXPECT_NEAR(value_of(results, "load_d50"), large, 1e-14);
     EXPECT_NEAR(value_of(results, "class_1_diameter"), large, 1e-14);
     EXPECT_NEAR(shown_by(*observer).at("density").at(1), 3000.0, 1e-9);
-    EXPECT_EQ(value_of(results, "class_1_bed_share"), 0.0);
+    const double of_small = small_grains * volume(small), of_large = large_grains * volume(large);
+    EXPECT_NEAR(value_of(results, "class_1_bed_share"), of_large / (2.0 * of_small + of_large),
+                1e-14);  // half the time
+    EXPECT_NEAR(value_of(results, "bed_d50"), small, 1e-14);
+    // Large over small, then small over small; the large grains alone would have 1 as well.
+    EXPECT_NEAR(value_of(results, "armouring_ratio_mean"), 0.5 * (large / small + 1.0), 1e-13);
+    EXPECT_EQ(value_of(results, "errors_hold"), 0.0);
     const double q_s = 0.5 * large_grains * volume(large) * 0.4 / 200.0;
     EXPECT_NEAR(value_of(results, "class_1_q_star_mean"), q_s / (share * std::sqrt(20.0)), 1e-13);
   }
   EXPECT_NE(whole.remarks().front().find("of the load 1 m"), std::string::npos) << whole.remarks().front();
+}
+
+// A bed of small grains that all leave but the large ones: at each time surface and bed are of one size.
+TEST(FractionalTransport, ComparesTheSurfaceWithTheBedOfTheSameTime) {
+  FractionalTransport observer = of_two_classes();
+  for (const bool first : {true, false}) {
+    const MadeUpGrains grains(world, small_grains + large_grains, [first](GlobalId id) {
+      return (id < small_grains) == first ? std::optional(armoured(id, 0.1, 0.1)) : std::nullopt;
+    });
+    observer.observe(grains.snapshot(first ? 0.0 : 1.0));
+  }
+  EXPECT_NEAR(value_of(observer.results(), "armouring_ratio_mean"), 1.0, 1e-13);
+}
+
+TEST(FractionalTransport, CountsTheLoadWhicheverWayItGoes) {
+  FractionalTransport along = of_two_classes(), against = of_two_classes();
+  along.observe(armoured_bed(world, 0.1, 0.4).snapshot(0.0));
+  against.observe(armoured_bed(world, -0.1, -0.4).snapshot(0.0));
+  const std::vector<Diagnostic> a = along.results(), b = against.results();
+  EXPECT_GT(value_of(a, "load_d50"), 0.0);
+  for (const char* name : {"load_d50", "class_0_load_share", "class_1_load_share", "surface_d50_mean"})
+    EXPECT_EQ(value_of(a, name), value_of(b, name)) << name;
+  EXPECT_EQ(value_of(a, "class_0_q_s_mean"), -value_of(b, "class_0_q_s_mean"));
 }
 
 RunContext run_of(double smallest, double largest, bool held = false) {
