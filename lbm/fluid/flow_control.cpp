@@ -27,7 +27,13 @@ void FlowControl::begin_with(const Force& force) {
   force_ = force.whole;
 }
 
-std::optional<FlowControl::Force> FlowControl::saved_force(const ArchiveReader& archive) {
+std::string FlowControl::name_of_force(int axis) { return fmt::format("fluid/force_{}", "xyz"[axis]); }
+
+std::optional<FlowControl::Force> FlowControl::saved_force(const ArchiveReader& archive, int axis) {
+  if (archive.has(name_of_force(axis))) {
+    const double given = archive.real_attribute(name_of_force(axis));
+    return Force{given, given};
+  }
   if (!archive.has("fluid/flow_control_force")) return std::nullopt;
   const double whole = archive.real_attribute("fluid/flow_control_force");
   if (!archive.has("fluid/flow_control_response_time")) return Force{whole, whole};  // older checkpoints have none

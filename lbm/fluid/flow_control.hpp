@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace thalweg::lbm {
 
@@ -39,8 +40,11 @@ public:
   };
   // Begins with a force (lattice units); of a flow that goes on as it was, the next force is what it would have been.
   void begin_with(const Force& force);
-  // The force of a control that was saved, in its lattice units; none of a flow that none controlled.
-  static std::optional<Force> saved_force(const ArchiveReader& archive);
+  // The force that was saved, in its lattice units: of a control or, of a flow that none controlled, the given one
+  // along the axis. None in older checkpoints of such flows.
+  static std::optional<Force> saved_force(const ArchiveReader& archive, int axis);
+  // Attribute of a given force along an axis.
+  static std::string name_of_force(int axis);
 
   void save(ArchiveWriter& archive) const;
   // Goes on with the force of a control with another response time.

@@ -121,12 +121,15 @@ template <typename Real>
 void Fluid<Real>::control_flow(const FlowTarget& target) {
   CHECK(target.axis >= 0 && target.axis < 3);
   control_.emplace(target);
+  parameters_.force[target.axis] = control_->force();
+  carry_force();
 }
 
 template <typename Real>
 void Fluid<Real>::begin_control_of(const ArchiveReader& archive, double unit) {
-  const std::optional<FlowControl::Force> force = FlowControl::saved_force(archive);
-  if (!control_ || !force) return;
+  if (!control_) return;
+  const std::optional<FlowControl::Force> force = FlowControl::saved_force(archive, control_->target().axis);
+  if (!force) return;
   control_->begin_with({unit * force->whole, unit * force->held});
   parameters_.force[control_->target().axis] = control_->force();
   carry_force();
@@ -282,7 +285,8 @@ void Fluid<Real>::save(ArchiveWriter& archive) const {
     archive.write(fmt::format("fluid/populations_{:02d}", i), std::span<const Real>(values), array_box());
   }
   walls_.save(archive, decomposition_, block_);
-  if (control_) control_->save(archive);
+  if (control_) return control_->save(archive);
+  for (int a = 0; a < 3; ++a) archive.attribute(FlowControl::name_of_force(a), carried_force_[a]);
 }
 
 template <typename Real>

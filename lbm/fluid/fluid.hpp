@@ -56,10 +56,10 @@ public:
   const Vec3& carried_force() const { return carried_force_; }
   // Declares the present force that of the last collision, for a state that was set up or loaded.
   void carry_force();
-  // Hands the force along one axis to a controller; its state is part of the checkpoint.
+  // Hands the force along one axis to a controller, which begins with none; its state is part of the checkpoint.
   void control_flow(const FlowTarget& target);
-  // Lets the controller, if there is one, begin with that of a saved flow, if that had one. unit: of an acceleration of
-  // the saved lattice, dx/dt^2, over that of this one.
+  // Lets the controller, if there is one, begin with the force of a saved flow, controlled or given. unit: of an
+  // acceleration of the saved lattice, dx/dt^2, over that of this one.
   void begin_control_of(const ArchiveReader& archive, double unit);
 
   // exchange_halo() in two halves, so that the caller can work meanwhile; no population may be written in between.

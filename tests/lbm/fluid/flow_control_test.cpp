@@ -52,6 +52,17 @@ TEST(FlowControl, HoldsTheTargetWithTheForceOfPoiseuilleFlow) {
   EXPECT_NEAR(fluid.parameters().force[0], 12.0 * nu * 0.01 / (h * h) / (1.0 + 0.5 / (h * h)), 1e-10);
 }
 
+// The force that was set before acts in no step.
+TEST(FlowControl, BeginsWithoutForce) {
+  const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
+  CollisionParameters parameters = viscous();
+  parameters.force = Vec3(1e-4, 0.0, -2e-4);
+  Fluid<double> fluid(decomposition, MPI_COMM_SELF, parameters, between_plates().faces);
+  fluid.control_flow({0, 0.01, 50.0, 5});
+  EXPECT_EQ(fluid.parameters().force, Vec3(0.0, 0.0, -2e-4));
+  EXPECT_EQ(fluid.carried_force(), Vec3(0.0, 0.0, -2e-4));
+}
+
 template <typename Real>
 test::MemoryArchive state_after(int steps, const Channel& channel, MPI_Comm communicator, const Index3& layout,
                                 const test::MemoryArchive* from = nullptr) {
@@ -120,6 +131,30 @@ TEST(FlowControl, BeginsWithTheForceOfASavedFlow) {
   EXPECT_DOUBLE_EQ(halved.carried_force()[0], 0.5 * force);
   free.begin_control_of(reader, 1.0);
   EXPECT_EQ(free.parameters().force[0], 0.0);
+}
+
+// The flow of a run whose force was given: a control begins with that force, and the mean that it holds stays.
+TEST(FlowControl, BeginsAFlowOfAGivenForceWithIt) {
+  const Decomposition decomposition({4, 10, 4}, 1.0, {true, false, true}, {1, 1, 1});
+  const FaceConditions faces = between_plates().faces;
+  CollisionParameters driven = viscous();
+  driven.force = Vec3(1e-4, 0.0, 0.0);
+  Fluid<double> first(decomposition, MPI_COMM_SELF, driven, faces);
+  for (int step = 0; step < 10000; ++step) first.advance();  // 10 h^2/nu, until it is steady
+  const auto mean = [](const Fluid<double>& fluid) {
+    const FluidTotals sums = fluid.totals();
+    return sums.momentum.x() / static_cast<double>(sums.cells) - 0.5 * fluid.carried_force()[0];
+  };
+  const test::MemoryArchive saved = test::saved(first, MPI_COMM_SELF);
+  test::MemoryReader reader(saved);
+  Fluid<double> held(decomposition, MPI_COMM_SELF, viscous(), faces);
+  held.control_flow({0, mean(first), 50.0, 5});
+  held.begin_control_of(reader, 1.0);
+  held.load_populations(reader);
+  for (int step = 0; step < 100; ++step) {
+    held.advance();
+    ASSERT_NEAR(held.parameters().force[0], 1e-4, 1e-10) << step;
+  }
 }
 
 // A flow that has not reached its target, as the start of another run: saved where the control looks next, it goes on
