@@ -1,5 +1,6 @@
 #include "analysis/observers/probes.hpp"
 
+#include "core/geometry/layer_at.hpp"
 #include "core/parallel/mpi_session.hpp"
 
 #include <fmt/format.h>
@@ -26,8 +27,7 @@ Probes::Probes(MPI_Comm communicator, const Decomposition& decomposition, const 
     Index3 cell;
     bool here = true;
     for (int a = 0; a < 3; ++a) {
-      cell[a] =
-          std::clamp(static_cast<int>(std::floor(point[a] / decomposition.spacing())), 0, decomposition.cells()[a] - 1);
+      cell[a] = std::clamp(layer_at(point[a], decomposition.spacing()), 0, decomposition.cells()[a] - 1);
       here = here && cell[a] >= block.lower[a] && cell[a] < block.upper[a];
     }
     if (here) mine_.push_back(cells_.size());

@@ -1,5 +1,7 @@
 #include "coupling/keys/face_keys.hpp"
 
+#include "core/geometry/layer_at.hpp"
+
 namespace thalweg::coupling {
 
 using lbm::FaceType;
@@ -29,7 +31,7 @@ lbm::FaceCondition condition_of(const FaceKeys& face, const Units& units) {
   condition.slip_of_first_cell = face.type == FaceType::slip_law_of_the_wall && face.of_first_cell;
   condition.slip_length = face.slip_length / units.spacing;
   condition.velocity = face.velocity / units.velocity();
-  if (face.recycling_plane) condition.recycling_plane = static_cast<int>(*face.recycling_plane / units.spacing);
+  if (face.recycling_plane) condition.recycling_plane = layer_at(*face.recycling_plane, units.spacing);
   condition.density_deviation = 3.0 * face.pressure / units.stress();  // p = rho/3 in lattice units
   return condition;
 }

@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "driver/case/axes.hpp"
+#include "driver/case/grain_setup.hpp"
 #include "io/text/stl_file.hpp"
 
 #include <fmt/format.h>
@@ -59,9 +60,7 @@ void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ra
     try {
       solid.surface = io::read_stl(solid.stl, ranks);
     } catch (const InputError& error) {
-      std::string reason = error.what();
-      if (reason.ends_with('.')) reason.pop_back();
-      throw document.error(key, reason);
+      throw document.error(key, error);
     }
     for (Vec3& point : solid.surface.points) point = point * solid.scale + solid.translate;
   }
@@ -129,12 +128,40 @@ std::set<double> solid_frames_every(const Case& c) {
   return intervals;
 }
 
+namespace {
+
+void add_image(TriangleMesh& mesh, const TriangleMesh& of, const Vec3& shift) {
+  const int first = static_cast<int>(mesh.points.size());
+  for (const Vec3& point : of.points) mesh.points.push_back(point + shift);
+  for (const std::array<int, 3>& corners : of.triangles)
+    mesh.triangles.push_back({first + corners[0], first + corners[1], first + corners[2]});
+}
+
+// A surface with its middle in the box and, where it crosses a periodic face, what comes in at the other end. One as
+// long as the box has no image along that axis.
+TriangleMesh brought_into(const PeriodicBox& box, TriangleMesh mesh) {
+  const bodies::Extent extent = bodies::extent_of(mesh);
+  const Vec3 middle = 0.5 * (extent.lower + extent.upper), shift = box.wrapped_from_afar(middle) - middle;
+  for (Vec3& point : mesh.points) point += shift;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = extent.lower[axis] + shift[axis], upper = extent.upper[axis] + shift[axis];
+    if (!box.periodic[axis] || upper - lower >= box.size[axis]) continue;
+    const TriangleMesh one_end = mesh;
+    if (lower < 0.0) add_image(mesh, one_end, box.size[axis] * Vec3::Unit(axis));
+    if (upper > box.size[axis]) add_image(mesh, one_end, -box.size[axis] * Vec3::Unit(axis));
+  }
+  return mesh;
+}
+
+}  // namespace
+
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time) {
   std::vector<TriangleMesh> surfaces;
   for (const SolidCase& solid : c.solids) {
-    surfaces.push_back(solid.sphere ? sphere_surface(*solid.sphere) : solid.surface);
+    TriangleMesh surface = solid.sphere ? sphere_surface(*solid.sphere) : solid.surface;
     const dem::PrescribedMotion motion = motion_of(solid);
-    for (Vec3& point : surfaces.back().points) point = motion.place(point, time);
+    for (Vec3& point : surface.points) point = motion.place(point, time);
+    surfaces.push_back(motion.moves() ? brought_into(grain_box(c), std::move(surface)) : std::move(surface));
   }
   return surfaces;
 }

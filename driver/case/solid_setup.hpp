@@ -36,7 +36,8 @@ bool any_solid_moves(const Case& c);
 // there are none. Solids that all stand still have one frame.
 std::set<double> solid_frames_every(const Case& c);
 
-// The surfaces of all solids at a time (s), in m; spheres as triangles.
+// The surfaces of all solids at a time (s), in m; spheres as triangles. One that moves is in the box, in parts where it
+// crosses a periodic face.
 std::vector<TriangleMesh> solid_surfaces(const Case& c, double time);
 
 // Largest distance of a rotating solid from its axis, m.

@@ -1,5 +1,6 @@
 #include "io/vtk/fluid_region.hpp"
 
+#include "core/geometry/layer_at.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/keys/key_error.hpp"
 
@@ -51,8 +52,7 @@ constexpr double rounding = 1e-9;  // cells
 Block block_of(const FluidRegionKeys& keys, const Index3& cells, double spacing) {
   if (keys.plane) {
     const int axis = static_cast<int>(keys.plane->axis);
-    const double number = std::floor(keys.plane->at / spacing + rounding);
-    return layer(cells, axis, static_cast<int>(std::clamp(number, 0.0, cells[axis] - 1.0)));
+    return layer(cells, axis, std::clamp(layer_at(keys.plane->at, spacing), 0, cells[axis] - 1));
   }
   if (keys.box) {
     Block block;

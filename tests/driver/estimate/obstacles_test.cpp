@@ -1,5 +1,6 @@
 #include "driver/estimate/obstacles.hpp"
 
+#include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/support/meshes.hpp"
@@ -7,6 +8,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -117,6 +120,33 @@ TEST(Obstacles, SolidsTakeTheirRoomInTheBed) {
   const Case water = testing::read_text(defaults_yaml("fluid"));  // with a sphere
   EXPECT_TRUE(solids_below(water));
   EXPECT_EQ(settled_height(water), 0.0);
+}
+
+// A sphere of 5 mm that goes along x at 0.05 m/s through a box 72 mm long, from x = 0.03 m: at 0.4 s its middle is at
+// 50 mm, at 0.8 s at 70 mm, with 3 mm beyond the face, and at 1.6 s it has gone 110 mm, to 38 mm of the next box.
+TEST(SolidSurfaces, AreInThePeriodicBox) {
+  const Case c = testing::read_text(
+      bed_with("") +
+      "solids: [{sphere: {centre: [0.03, 0.02, 0.02], radius: 0.005}, motion: {velocity: [0.05, 0, 0]}}]\n");
+  ASSERT_EQ(c.domain.size[0], 0.072);
+  const auto ends = [&](double time) {
+    double lower = 1.0, upper = -1.0;
+    const std::vector<TriangleMesh> surfaces = solid_surfaces(c, time);
+    for (const Vec3& point : surfaces.front().points) {
+      lower = std::min(lower, point[0]);
+      upper = std::max(upper, point[0]);
+    }
+    return std::array{lower, upper};
+  };
+  constexpr double slack = 2e-5;  // of the triangles, in m
+  EXPECT_NEAR(ends(0.4)[0], 0.045, slack);
+  EXPECT_NEAR(ends(0.4)[1], 0.055, slack);
+  const std::size_t triangles = solid_surfaces(c, 0.4).front().triangles.size();
+  EXPECT_EQ(solid_surfaces(c, 0.8).front().triangles.size(), 2 * triangles);  // and its image
+  EXPECT_NEAR(ends(0.8)[0], -0.007, slack);
+  EXPECT_NEAR(ends(0.8)[1], 0.075, slack);
+  EXPECT_NEAR(ends(1.6)[0], 0.033, slack);
+  EXPECT_NEAR(ends(1.6)[1], 0.043, slack);
 }
 
 // A block 20 mm long and 10 mm wide; the columns that its edges cross count or not, a hundredth at most.
