@@ -5,6 +5,7 @@
 #include "beds/packing/packing.hpp"
 #include "beds/population/population_clumps.hpp"
 #include "core/base/error.hpp"
+#include "core/base/error_message.hpp"
 #include "core/keys/key_error.hpp"
 #include "dem/motion/grain_seed.hpp"
 
@@ -24,11 +25,6 @@ namespace {
 constexpr double same_size = 1e-9;
 
 const char* const file_key = "placement.file";
-
-std::string without_period(std::string text) {
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
 
 std::string shape_text(double thickness) {
   return thickness > 0.0 ? fmt::format("disks {:g} m thick", thickness) : std::string("spheres");
@@ -59,7 +55,7 @@ void about_file(Work&& work) {
   try {
     work();
   } catch (const InputError& error) {
-    throw KeyError(file_key, without_period(error.what()));
+    throw KeyError(file_key, without_full_stop(error.what()));
   }
 }
 
@@ -110,7 +106,7 @@ void check_rows(Population& population, const PeriodicBox& box, const Ranks& ran
     refuse_overlaps(population.file, box, allowed, largest_radius, ranks);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}; up to placement.largest_overlap: {:g} diameters are allowed",
-                                 without_period(error.what()), allowed));
+                                 without_full_stop(error.what()), allowed));
   }
 }
 
@@ -133,7 +129,7 @@ std::shared_ptr<const dem::ClumpShape> take_shape(Population& population) {
     if (!population.has_size()) population.diameter = population.shape_diameter;
     return shape;
   } catch (const InputError& error) {
-    throw KeyError("shape.clump", without_period(error.what()));
+    throw KeyError("shape.clump", without_full_stop(error.what()));
   }
 }
 

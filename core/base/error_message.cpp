@@ -16,4 +16,9 @@ std::string error_message(const std::exception& error) {
   return is_a_sentence ? error.what() : fmt::format("Unexpected error: {}.", error.what());
 }
 
+std::string without_full_stop(std::string sentence) {
+  if (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
+}
+
 }  // namespace thalweg

@@ -19,8 +19,8 @@ struct SampleContext {
 
 // The wanted fields of those cells of the region (global coordinates) that this rank owns. Only these cells are read,
 // and for gradients their neighbours; but shear rate and eddy viscosity need all that streams in, so for them the slots
-// that are filled from walls and bodies are filled everywhere, as the next step will do again: no post-collision
-// population changes. Collective.
+// that are filled from walls and bodies are filled everywhere. The next step fills them anew, once bodies have moved,
+// so sampling changes no step. Collective.
 template <typename Real>
 FluidFields sample_fields(lbm::Fluid<Real>& fluid, const SampleContext& context, const std::vector<FluidField>& wanted,
                           const Block& region);
@@ -34,7 +34,7 @@ template <typename Real>
 std::optional<FluidSource::State> state_of(const lbm::Fluid<Real>& fluid, const Units& units, const Index3& cell);
 
 // Driving force of the fluid, and the force on the upper face in the coming step; reference: rho - 1 that exerts no
-// force. Fills the slots at walls, as the next step will do again. Collective.
+// force. Fills the slots at walls, which the next step fills anew. Collective.
 template <typename Real>
 FluidSource::Drive drive_of(lbm::Fluid<Real>& fluid, const Units& units, double reference);
 

@@ -227,46 +227,23 @@ static void describe_column(SectionVisitor& visit, Case& c) {
                 });
 }
 
-std::vector<NamedChoice<SystemKind>> choices_of(SystemKind) {
-  return {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
-          {SystemKind::fluid, "fluid", "fluid alone"},
-          {SystemKind::grains, "grains", "dry grains"},
-          {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"},
-          {SystemKind::continuum, "continuum", "a column of grains and water as two continua"}};
-}
-
-std::string name_of(SystemKind kind) {
-  for (const NamedChoice<SystemKind>& choice : choices_of(kind))
-    if (choice.value == kind) return choice.name;
-  return {};
-}
-
-void describe(SectionVisitor& visit, Case& c) {
-  visit.choice("system", c.system, {.meaning = "what is simulated", .required = true});
-  const bool with_fluid = has_fluid(c), with_grains = has_grains(c.system);
-  const OnlyIf of_fluid = only_with_fluid(c.system), of_grains = only_with_grains(with_grains);
-  std::optional<std::string> preset;  // has been laid beneath the case before it is read
-  visit.text("preset", preset,
-             {.meaning = fmt::format("named set of defaults, which keys of the case override: {}; `thalweg defaults "
-                                     "zhang2022` shows them",
-                                     preset_names()),
-              .example = "zhang2022"});
-  visit.text("name", c.name, {.meaning = "name of the run in its output"});
-  if (c.system == SystemKind::continuum) {
-    describe_column(visit, c);
-    return;
-  }
-  for (const char* section : {"column", "closures", "creep"})
-    visit.not_here(section, "only system: continuum has it; remove the section or set system: continuum");
+static void describe_box_and_flow(SectionVisitor& visit, Case& c) {
+  const bool with_fluid = has_fluid(c);
   visit.section("domain", {.meaning = "the box, its cells and its faces", .required = true},
                 [&](SectionVisitor& inside) { describe_domain(inside, c.domain, with_fluid); });
-  visit.section("fluid", c.fluid, {.meaning = "properties of the fluid", .required = true, .only_if = of_fluid});
+  visit.section("fluid", c.fluid,
+                {.meaning = "properties of the fluid", .required = true, .only_if = only_with_fluid(c.system)});
   visit.section("gravity", {.meaning = "given by magnitude and slope, or as a vector", .required = true},
                 [&](SectionVisitor& inside) { describe_gravity(inside, c.gravity, with_fluid); });
   visit.section("flow", c.flow,
                 {.meaning = "the flow over the settled bed, in place of slope or height, which follow from it",
                  .only_if = {c.system == SystemKind::resolved,
                              "only system: resolved has a bed under water; remove the section"}});
+}
+
+static void describe_grains_and_walls(SectionVisitor& visit, Case& c) {
+  const bool with_fluid = has_fluid(c);
+  const OnlyIf of_grains = only_with_grains(has_grains(c.system));
   visit.section("disks", c.disks,
                 {.meaning = "two dimensions: the grains are disks that move in the x-z plane",
                  .only_if = {!with_fluid, "only dry grains can be disks; remove the section or set system: grains"}});
@@ -289,14 +266,23 @@ void describe(SectionVisitor& visit, Case& c) {
                       c.grains.empty() || c.contact.restitution || c.contact.damping, "restitution",
                       "the loss in a collision is missing; give restitution, for example 0.93, or damping in kg/s");
                 });
+}
+
+static void describe_forces_of_fluid(SectionVisitor& visit, Case& c) {
   visit.section("model_fluid",
                 {.meaning = "the force of Clark et al. (2017) in place of a fluid",
                  .required = true,
                  .only_if = {c.system == SystemKind::model_fluid,
                              "only system: model_fluid has it; remove the section or set system: model_fluid"}},
                 [&](SectionVisitor& inside) { describe(inside, c.model_fluid, c.disks.has_value()); });
-  visit.section("coupling", {.meaning = "interaction of the fluid with grains or solids", .only_if = of_fluid},
-                [&](SectionVisitor& inside) { describe(inside, c.coupling, with_grains); });
+  visit.section("coupling",
+                {.meaning = "interaction of the fluid with grains or solids", .only_if = only_with_fluid(c.system)},
+                [&](SectionVisitor& inside) { describe(inside, c.coupling, has_grains(c.system)); });
+}
+
+static void describe_run_and_results(SectionVisitor& visit, Case& c) {
+  const bool with_fluid = has_fluid(c);
+  const bool with_grains = has_grains(c.system);
   visit.section("initial", {.meaning = "state at the start"},
                 [&](SectionVisitor& inside) { describe_initial(inside, c.initial, c.system); });
   visit.list("solids", c.solids, {.meaning = "bodies in the way of fluid and grains"});
@@ -304,13 +290,48 @@ void describe(SectionVisitor& visit, Case& c) {
                 "disks move in a plane, which a solid would push them out of; give walls");
   visit.section("run", {.meaning = "duration and time integration", .required = true},
                 [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
-  visit.section("output", {.meaning = "what the run writes, besides run.log and summary.json"},
-                [&](SectionVisitor& inside) {
-                  describe(inside, c.output,
-                           {with_fluid, "a run without fluid has no output of it; remove the section"}, of_grains);
-                });
+  visit.section(
+      "output", {.meaning = "what the run writes, besides run.log and summary.json"}, [&](SectionVisitor& inside) {
+        describe(inside, c.output, {with_fluid, "a run without fluid has no output of it; remove the section"},
+                 only_with_grains(with_grains));
+      });
   visit.section("analysis", {.meaning = "what is measured during the run"},
                 [&](SectionVisitor& inside) { describe_analysis(inside, c.analysis, c.system); });
+}
+
+std::vector<NamedChoice<SystemKind>> choices_of(SystemKind) {
+  return {{SystemKind::resolved, "resolved", "fluid with grains in it, every grain resolved"},
+          {SystemKind::fluid, "fluid", "fluid alone"},
+          {SystemKind::grains, "grains", "dry grains"},
+          {SystemKind::model_fluid, "model_fluid", "grains under a prescribed fluid force"},
+          {SystemKind::continuum, "continuum", "a column of grains and water as two continua"}};
+}
+
+std::string name_of(SystemKind kind) {
+  for (const NamedChoice<SystemKind>& choice : choices_of(kind))
+    if (choice.value == kind) return choice.name;
+  return {};
+}
+
+void describe(SectionVisitor& visit, Case& c) {
+  visit.choice("system", c.system, {.meaning = "what is simulated", .required = true});
+  std::optional<std::string> preset;  // has been laid beneath the case before it is read
+  visit.text("preset", preset,
+             {.meaning = fmt::format("named set of defaults, which keys of the case override: {}; `thalweg defaults "
+                                     "zhang2022` shows them",
+                                     preset_names()),
+              .example = "zhang2022"});
+  visit.text("name", c.name, {.meaning = "name of the run in its output"});
+  if (c.system == SystemKind::continuum) {
+    describe_column(visit, c);
+    return;
+  }
+  for (const char* section : {"column", "closures", "creep"})
+    visit.not_here(section, "only system: continuum has it; remove the section or set system: continuum");
+  describe_box_and_flow(visit, c);
+  describe_grains_and_walls(visit, c);
+  describe_forces_of_fluid(visit, c);
+  describe_run_and_results(visit, c);
 }
 
 }  // namespace thalweg::driver

@@ -3,6 +3,7 @@
 #include "analysis/observers/probes.hpp"
 #include "analysis/observers/tracks.hpp"
 #include "analysis/reach/reach_keys.hpp"
+#include "dem/motion/grain_volume.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/reference_grain.hpp"
@@ -62,7 +63,7 @@ double shown_grains(const Case& c, const io::GrainSelectionKeys& keys) {
   if (!keys.box || c.disks || grain_output_facts(c).clumps) return count;
   const double d = smallest_diameter(c), densest = std::numbers::pi / std::sqrt(18.0);
   const double room = (keys.box->upper - keys.box->lower + Vec3::Constant(d)).prod();
-  return std::min(count, std::ceil(densest * room / (std::numbers::pi / 6.0 * d * d * d)));
+  return std::min(count, std::ceil(densest * room / dem::grain_volume(0.5 * d, 0.0)));
 }
 
 double grain_frames(const Case& c) {

@@ -1,14 +1,12 @@
 #include "driver/estimate/grain_weight.hpp"
 
-#include <numbers>
+#include "dem/motion/grain_volume.hpp"
 
 namespace thalweg::driver {
 
 namespace {
 
-double displaced_mass(double fluid_density, double radius) {
-  return fluid_density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-}
+double displaced_mass(double fluid_density, double radius) { return fluid_density * dem::grain_volume(radius, 0.0); }
 
 }  // namespace
 

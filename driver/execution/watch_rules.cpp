@@ -2,6 +2,7 @@
 
 #include "dem/laws/contact_laws.hpp"
 #include "dem/laws/liquid_bridge.hpp"
+#include "dem/motion/grain_volume.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
@@ -108,8 +109,8 @@ double speed_of_bridges(const Case& c) {
   const dem::LiquidBridge bridge(*c.contact.liquid_bridge);
   double largest = 0.0;
   for (const beds::Population& grains : c.grains) {
-    const double d = grains.smallest_diameter(), mass = grains.density * std::numbers::pi / 6.0 * d * d * d;
-    largest = std::max(largest, std::sqrt(2.0 * bridge.pull(0.0, 0.5 * d) * bridge.rupture_distance() / mass));
+    const double radius = 0.5 * grains.smallest_diameter(), mass = grains.density * dem::grain_volume(radius, 0.0);
+    largest = std::max(largest, std::sqrt(2.0 * bridge.pull(0.0, radius) * bridge.rupture_distance() / mass));
   }
   return largest;
 }

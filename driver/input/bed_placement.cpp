@@ -32,9 +32,7 @@ Bed read_bed(const std::filesystem::path& path, const io::YamlDocument& document
   try {
     return io::read_bed_file(path, ranks);
   } catch (const InputError& error) {
-    std::string reason = error.what();
-    if (reason.ends_with('.')) reason.pop_back();
-    throw document.error(key, reason);
+    throw document.error(key, error);
   }
 }
 
@@ -59,9 +57,7 @@ void take_shape(beds::Population& population, const io::YamlDocument& document, 
     for (Vec3& point : surface.points) point *= scale;
     take_surface(shape, surface);
   } catch (const InputError& error) {
-    std::string reason = error.what();
-    if (reason.ends_with('.')) reason.pop_back();
-    throw document.error(key, reason);
+    throw document.error(key, error);
   }
 }
 

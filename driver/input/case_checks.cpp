@@ -1,6 +1,7 @@
 #include "driver/input/case_checks.hpp"
 
 #include "core/base/schedule.hpp"
+#include "core/geometry/layer_at.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "dem/motion/walls.hpp"
 #include "driver/case/limit_text.hpp"
@@ -132,32 +133,25 @@ void check_initial_fluid(const Case& c, const io::YamlDocument& document) {
                               (profile.perturbation ? strongest_gust * profile.perturbation->amplitude : 0.0)));
 }
 
-void check_fluid(const Case& c, const io::YamlDocument& document) {
-  if (!has_fluid(c)) return;
-  if (!(relaxation_time(c) > 0.5))
-    throw document.error("fluid.kinematic_viscosity",
-                         "the relaxation time of the lattice is 1/2, which means no "
-                         "viscosity at all; give a larger viscosity in m^2/s or a longer step");
-  if (fluid_time_step(c) > c.run.until)
-    throw document.error("fluid.time_step",
-                         fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
-                                     "later run.until",
-                                     fluid_time_step(c)));
-  if (c.fluid.mean_velocity && !periodic_axes(c.domain)[0])
+void check_held_flow(const Case& c, const io::YamlDocument& document) {
+  if (!c.fluid.mean_velocity) return;
+  if (!periodic_axes(c.domain)[0])
     throw document.error("fluid.mean_velocity",
                          "faces across x that are not periodic decide how much flows, and a force that works against "
                          "them grows without limit; remove the key, or make domain.boundaries.x periodic");
-  if (c.fluid.mean_velocity)
-    check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
-  if (c.fluid.mean_velocity && c.fluid.mean_velocity->response_time < 100.0 * fluid_time_step(c))
+  check_lattice_velocity(c, document, "fluid.mean_velocity.velocity", std::abs(c.fluid.mean_velocity->velocity));
+  if (c.fluid.mean_velocity->response_time < 100.0 * fluid_time_step(c))
     throw document.error(
         "fluid.mean_velocity.response_time",
         fmt::format("the force is steered every 10 steps and needs ten times as long to answer; give at "
                     "least {} s",
                     at_least_text(100.0 * fluid_time_step(c), 3)));
+}
+
+// Velocities of faces and grains that the case gives, which the lattice must be able to represent.
+void check_given_velocities(const Case& c, const io::YamlDocument& document) {
   for (const coupling::FaceKeys& face : c.domain.faces)
     if (face.has_velocity()) check_lattice_velocity(c, document, "domain.boundaries", face.velocity.norm());
-  check_initial_fluid(c, document);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const beds::Population& grains = c.grains[n];
     const std::string key = fmt::format("grains.{}.", n);
@@ -177,6 +171,22 @@ void check_fluid(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.sinks.size(); ++n)
     if (const auto& back = c.sinks[n].recirculation; back && back->velocity)
       check_lattice_velocity(c, document, fmt::format("sinks.{}.recirculation.velocity", n), back->velocity->norm());
+}
+
+void check_fluid(const Case& c, const io::YamlDocument& document) {
+  if (!has_fluid(c)) return;
+  if (!(relaxation_time(c) > 0.5))
+    throw document.error("fluid.kinematic_viscosity",
+                         "the relaxation time of the lattice is 1/2, which means no "
+                         "viscosity at all; give a larger viscosity in m^2/s or a longer step");
+  if (fluid_time_step(c) > c.run.until)
+    throw document.error("fluid.time_step",
+                         fmt::format("the step of {:.4g} s is longer than the run; give a shorter step in s or a "
+                                     "later run.until",
+                                     fluid_time_step(c)));
+  check_held_flow(c, document);
+  check_given_velocities(c, document);
+  check_initial_fluid(c, document);
 }
 
 void check_balanced_gravity(const Case& c, const io::YamlDocument& document) {
@@ -268,7 +278,7 @@ void check_recycling(const Case& c, const io::YamlDocument& document) {
       throw document.error(key_of_face(face, document) + ".recycling_plane",
                            fmt::format("the plane must lie in the box; give a position along {} below {:g} m",
                                        axis_name[axis], c.domain.size[axis]));
-    const int plane = static_cast<int>(*inlet.recycling_plane / c.domain.spacing);
+    const int plane = layer_at(*inlet.recycling_plane, c.domain.spacing);
     if (plane == (face % 2 == 0 ? 0 : cells_of(c.domain)[static_cast<std::size_t>(axis)] - 1))
       throw document.error(key_of_face(face, document) + ".recycling_plane",
                            fmt::format("the plane lies in the cells of the inlet itself; give a position along {} more "

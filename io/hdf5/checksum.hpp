@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/archive.hpp"
+#include "core/base/counter_random.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -12,15 +13,8 @@
 
 namespace thalweg::io {
 
-// The finaliser of splitmix64 (Steele, Lea & Flood 2014): a bijection in which every bit depends on all.
-inline std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-// The sum over a box of mixed(value, its place in the dataset), modulo 2^64; those of all boxes add up to that of the
-// dataset. values: as many as the box has, in its order.
+// The sum over a box of a hash of each value and its place in the dataset, modulo 2^64; those of all boxes add up to
+// that of the dataset. values: as many as the box has, in its order.
 template <typename Number>
 std::uint64_t checksum(std::span<const Number> values, const ArrayBox& box) {
   using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
@@ -32,7 +26,7 @@ std::uint64_t checksum(std::span<const Number> values, const ArrayBox& box) {
     std::uint64_t place = 0;
     for (std::size_t a = 0; a < axes; ++a) place = place * box.global_shape[a] + at[a];
     for (std::size_t n = 0; n < row; ++n)
-      sum += mixed(std::uint64_t{std::bit_cast<Bits>(values[first + n])} ^ (place + n) * 0x9e3779b97f4a7c15u);
+      sum += finalised_bits(std::uint64_t{std::bit_cast<Bits>(values[first + n])} ^ (place + n) * golden_step);
     for (std::size_t a = axes - 1; a-- > 0;) {
       if (++at[a] < box.offset[a] + box.shape[a]) break;
       at[a] = box.offset[a];

@@ -1,5 +1,6 @@
 #include "io/text/yaml_document.hpp"
 
+#include "core/base/error_message.hpp"
 #include "core/base/utf8.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "io/files/atomic_file.hpp"
@@ -343,6 +344,10 @@ InputError YamlDocument::error(const std::string& key_path, const std::string& r
     node = find(section);
   }
   return InputError(fmt::format("{}: {}: {}.", (node ? *node : root_).place, key_path, remedy));
+}
+
+InputError YamlDocument::error(const std::string& key_path, const InputError& of_file) const {
+  return error(key_path, without_full_stop(of_file.what()));
 }
 
 }  // namespace thalweg::io

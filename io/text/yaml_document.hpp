@@ -71,6 +71,8 @@ public:
   // The error of a value: "<place>: <key path> = <value found>: <remedy>.", or, where the key is not given, the place
   // of the section it belongs to and "<key path>: <remedy>.".
   InputError error(const std::string& key_path, const std::string& remedy) const;
+  // The same of what was wrong with the file that a value names.
+  InputError error(const std::string& key_path, const InputError& of_file) const;
 
 private:
   void apply(const std::string& override_text);
