@@ -95,16 +95,27 @@ bool overlaps(const TravellingBody& body, const Vec3& place, const Vec3& centre,
   return false;
 }
 
-bool meets_walls(const TravellingBody& body, const Vec3& place, const Surroundings& around) {
+// Depth (m) of a body at a place in walls and solids; 0 where it is clear of them.
+double depth_in_walls(const TravellingBody& body, const Vec3& place, const Surroundings& around) {
+  double depth = 0.0;
   for (std::size_t r = 0; r < body.rows.size(); ++r) {
     const Vec3 centre = around.box.wrapped(place + body.arm(r));
     const double radius = body.rows[r].radius;
     for (const Plane& wall : around.walls)
-      if (wall.seen_from(centre, around.box).distance < radius) return true;
-    if (!around.solids.empty() && depth_in_solids(centre, radius, around.box, around.placed, around.solids).depth > 0.0)
-      return true;
+      depth = std::max(depth, radius - wall.seen_from(centre, around.box).distance);
+    if (!around.solids.empty())
+      depth = std::max(depth, depth_in_solids(centre, radius, around.box, around.placed, around.solids).depth);
   }
-  return false;
+  return depth;
+}
+
+// Depth (m) that a body may have in walls and solids at its own height: that of the place at which it left, so that
+// what lies, rolls or slides on a floor goes on as it did. Where a wall has moved there since, it may have none.
+double own_depth(const PlaceSeeker& seeker, const Surroundings& around) {
+  constexpr double rounding = 1e-9, deepest = 0.01;  // of its reach
+  if (!seeker.height) return 0.0;
+  const double reach = seeker.body.reach(), depth = depth_in_walls(seeker.body, seeker.body.centre(), around);
+  return depth > 0.0 && depth < deepest * reach ? depth + rounding * reach : 0.0;
 }
 
 // The grains of this rank that a body could touch anywhere in its entrance.
@@ -127,13 +138,16 @@ Mask blocked_places(const PlaceSeeker& seeker, const Trials& trials, const Grain
                     const Surroundings& around) {
   const GrainStore& store = grains.store;
   const std::vector<std::size_t> near = grains_near(seeker, grains, around.box);
+  const double at_own_height = own_depth(seeker, around);
   Mask blocked = 0;
   for (std::size_t attempt = 0; attempt < places_tried; ++attempt) {
     const std::optional<Vec3>& place = trials[attempt];
     const auto by_grain = [&](std::size_t s) {
       return overlaps(seeker.body, *place, store.position[s], store.radius[s], around.box);
     };
-    if (!place || std::any_of(near.begin(), near.end(), by_grain) || meets_walls(seeker.body, *place, around))
+    const double allowed = tries_own_height(seeker, static_cast<int>(attempt)) ? at_own_height : 0.0;
+    if (!place || std::any_of(near.begin(), near.end(), by_grain) ||
+        depth_in_walls(seeker.body, *place, around) > allowed)
       blocked |= Mask{1} << attempt;
   }
   return blocked;

@@ -1,6 +1,7 @@
 // Supplies and sinks: when grains come and go, that nothing is lost, and the same bits on any number of ranks.
 #include "tests/dem/supply/supply_cases.hpp"
 #include "tests/support/damaged_archive.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -280,6 +281,37 @@ TEST(Turnover, AGrainKeepsHeightAndMotion) {
     EXPECT_EQ(grains.clumps()[c].centre.z(), 0.012);
     EXPECT_EQ(grains.clumps()[c].velocity, Vec3(0.4, 0.0, 0.0));
     EXPECT_GT(grains.clumps()[c].angular_velocity.norm(), 20.0);
+  }
+}
+
+// A smooth sphere slides on a floor, a plane or a solid, with its weight on it. It comes to lie m g/k deep in 1 ms,
+// leaves after 8 ms, and is as deep wherever it comes in, so that it keeps its motion and neither rises nor sinks: but
+// for half a step of 25 us without a force, g dt/2 over the frequency of the contact, 5 % of the depth.
+TEST(Turnover, AGrainThatSlidesOnAFloorGoesOnSliding) {
+  constexpr double g = 15.0, top = 0.01;
+  for (const bool on_solid : {false, true}) {
+    GrainParameters p = box_that_recirculates();
+    p.body_force = [](double mass, double) { return Vec3(0.0, 0.0, -g * mass); };
+    p.contact.friction = p.contact.wall_friction = 0.0;
+    p.walls = face_planes(box_on(1).box(), p.contact);
+    p.sinks[0].recirculation->entrance.zone.lower.z() = 0.0;
+    if (on_solid)
+      p.solids = {
+          {std::make_shared<SolidSurface>(thalweg::test::box_mesh(Vec3::Zero(), Vec3(0.04, 0.02, top))), 0.0, 0.0, {}}};
+    GrainSeed sphere = flying_sphere(0, 0.0);
+    const double depth = sphere.mass() * g / p.contact.normal_stiffness;
+    const double height = (on_solid ? top : 0.0) + small - depth;
+    sphere.position.z() = (1.0 + 1e-9) * (height + depth);
+    GrainDynamics grains(box_on(size_of(MPI_COMM_WORLD)), MPI_COMM_WORLD, p, GrainSeeds{{sphere}, {}});
+    for (int n = 0; n < 1000; ++n) {
+      step(grains);
+      const GrainStore& store = grains.store();
+      for (std::size_t s = 0; s < store.owned; ++s) {
+        ASSERT_NEAR(store.velocity[s].x(), 0.5, 1e-9) << on_solid << ' ' << n;
+        ASSERT_NEAR(store.position[s].z(), height, (n < 32 ? 1.1 : 0.1) * depth) << on_solid << ' ' << n;
+      }
+    }
+    EXPECT_GE(diagnostic(grains, "recirculated_grains"), 3.0);
   }
 }
 
