@@ -134,19 +134,31 @@ double speed_of_rounding(const Case& c) {
   return overlap * largest * std::numbers::pi / shortest_contact(c);
 }
 
-// m/s. Through walled boxes: sqrt(2 sum |g_a| L_a); along periodic axes a dry grain is accelerated as long as the run
-// lasts. In a fluid no faster than the terminal speed at a drag coefficient of 0.4, the least a sphere has below the
-// drag crisis (Clift, Grace and Weber 1978), on top of what the fluid does.
+// True if some sink lets grains come in again further up along this axis, with the motion that they had: at the same
+// height, so never for the vertical axis.
+bool leads_back_up(const Case& c, Eigen::Index axis) {
+  const double gravity = gravity_vector(c.gravity)[axis];
+  return axis != 2 && std::any_of(c.sinks.begin(), c.sinks.end(), [&](const beds::SinkKeys& sink) {
+           if (!sink.recirculation || sink.recirculation->velocity) return false;
+           const beds::RegionKeys &out = sink.region, &in = sink.recirculation->region;
+           return gravity > 0.0 ? in.lower[axis] < out.upper[axis] : in.upper[axis] > out.lower[axis];
+         });
+}
+
+// m/s. Through walled boxes: sqrt(2 sum |g_a| L_a); along periodic axes, and those along which a sink leads back up, a
+// dry grain is accelerated as long as the run lasts. In a fluid no faster than the terminal speed at a drag coefficient
+// of 0.4, the least a sphere has below the drag crisis (Clift, Grace and Weber 1978), on top of what the fluid does.
 double fall_speed(const Case& c) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   const Vec3 gravity = gravity_vector(c.gravity);
   double head = 0.0, unlimited = 0.0, fastest = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double g = std::abs(gravity[static_cast<Eigen::Index>(a)]);
-    if (periodic[a])
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double g = std::abs(gravity[axis]);
+    if (periodic[a] || leads_back_up(c, axis))
       unlimited += g * c.run.until;
     else
-      head += g * c.domain.size[static_cast<Eigen::Index>(a)];
+      head += g * c.domain.size[axis];
   }
   if (!has_fluid(c)) return std::sqrt(2.0 * head) + unlimited;
   for (const beds::Population& grains : c.grains) {

@@ -81,6 +81,27 @@ TEST(WatchRules, GrainsMayFallAndBeCarried) {
               3.0 + 3.0 * 9.8 * std::sin(angle) + std::sqrt(2.0 * 9.8 * std::cos(angle) * 0.075), 1e-9);
 }
 
+// Down a walled slope, from a sink back to its upper end, with or without the motion that they had.
+TEST(WatchRules, GrainsThatComeBackMayFallOn) {
+  Case c = read_text(flume);
+  c.system = SystemKind::grains;
+  c.domain.faces[x_low].type = c.domain.faces[x_high].type = lbm::FaceType::no_slip;
+  const double g = 9.8, angle = std::atan(0.07), length = c.domain.size.x(), until = c.run.until;
+  const double down = g * std::cos(angle) * 0.075, along = g * std::sin(angle);
+  const double once = std::sqrt(2.0 * (down + along * length)), again = std::sqrt(2.0 * down) + along * until;
+  EXPECT_NEAR(expected_grain_speed(c), once, 1e-9);
+  beds::SinkKeys& sink = c.sinks.emplace_back();
+  sink.region = {Vec3(0.9 * length, 0.0, 0.0), c.domain.size};
+  EXPECT_NEAR(expected_grain_speed(c), once, 1e-9);
+  sink.recirculation.emplace().region = {Vec3::Zero(), Vec3(0.1 * length, c.domain.size.y(), 0.075)};
+  EXPECT_NEAR(expected_grain_speed(c), again, 1e-9);
+  sink.recirculation->velocity = Vec3::Zero();
+  EXPECT_NEAR(expected_grain_speed(c), once, 1e-9);
+  sink.recirculation->velocity.reset();
+  std::swap(sink.region, sink.recirculation->region);  // it leads down the slope
+  EXPECT_NEAR(expected_grain_speed(c), once, 1e-9);
+}
+
 // What the case itself moves: a solid, grains that come in, moist grains that a bridge pulls together, those of another
 // run.
 TEST(WatchRules, GrainsMayBeAsFastAsTheCaseMovesThem) {
