@@ -61,11 +61,13 @@ void about_file(Work&& work) {
 
 // first: of the rows of all ranks. Throws InputError for a row that cannot be a grain of the box.
 void check_row(const BedGrain& row, const dem::GrainSeed& first, const PeriodicBox& box) {
-  if ((row.position.array() < 0.0).any() || (row.position.array() > box.size.array()).any())
-    throw InputError(
-        fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a "
-                    "domain.size in m that holds the bed, or a placement.region to leave it out",
-                    row.id, row.position[0], row.position[1], row.position[2]));
+  const bool below_zero = (row.position.array() < 0.0).any();
+  if (below_zero || (row.position.array() > box.size.array()).any())
+    throw InputError(fmt::format("grain {} of the file, at [{:g}, {:g}, {:g}] m, is outside this case's box; give a {}",
+                                 row.id, row.position[0], row.position[1], row.position[2],
+                                 below_zero ? "placement.region to leave it out: a box begins at 0"
+                                            : "domain.size in m that holds the bed, or a placement.region to leave it "
+                                              "out"));
   dem::GrainSeed seed;
   seed.id = row.id;
   seed.radius = row.radius;

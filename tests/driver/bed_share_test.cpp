@@ -251,6 +251,16 @@ TEST_F(BedShare, IsRefusedForAGrainOutsideInTheLast) {
   expect_the_same_refusal({"grains.1.placement.file", "grain 634 of the file", "outside this case's box"});
 }
 
+// As in the bed of a run whose floor has moved down: no size of the box holds it.
+TEST_F(BedShare, IsRefusedForAGrainBelowTheBox) {
+  std::vector<BedGrain> rows = rows_of_bed();
+  rows[634].position.z() = -1e-3;
+  write(rows);
+  expect_the_same_refusal({"grains.1.placement.file", "grain 634 of the file",
+                           "outside this case's box; give a "
+                           "placement.region to leave it out"});
+}
+
 TEST_F(BedShare, IsRefusedWhereThereIsNone) {
   write({});
   expect_the_same_refusal({"no grain in the region"});
