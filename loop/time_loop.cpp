@@ -190,7 +190,7 @@ void TimeLoop::measure() {
 }
 
 bool TimeLoop::stop_criteria_hold() {
-  if (plan_.stop_criteria.empty()) return false;
+  if (plan_.stop_criteria.empty() || system_.time() < plan_.stop_criteria_from) return false;
   check_health();
   const auto below = [this](const StopCriterion& limit) {
     const std::optional<double> value = find_diagnostic(record_.diagnostics, limit.diagnostic);

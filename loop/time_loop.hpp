@@ -68,6 +68,7 @@ struct StopCriterion {
 struct LoopPlan {
   double until = 0.0;                        // s, simulated
   std::vector<StopCriterion> stop_criteria;  // the run finishes when all hold; none: at `until` only
+  double stop_criteria_from = 0.0;           // s, simulated: they hold no earlier
   std::int64_t steps_between_convergence_checks = 200;
   std::string stop_criteria_meaning;                 // in words for the log, e.g. "all grains at rest"
   std::vector<WatchRule> watch;                      // limits of the diagnostics of the system

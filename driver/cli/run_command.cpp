@@ -37,6 +37,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -135,6 +136,18 @@ void prepare_folder(const RunPaths& paths, const Case& c, const Command& command
 // Bandwidth of a slow or shared disk, bytes/s.
 constexpr double slow_disk = 1e8;
 
+// Grains are at rest only when no more come in: all supplies are over, no grain waits for a place, and none is on its
+// way back.
+void wait_for_turnover(const Case& c, loop::LoopPlan& plan) {
+  constexpr double none = std::numeric_limits<double>::min();
+  if (c.supplies.empty() && c.sinks.empty()) return;
+  for (const beds::SupplyKeys& supply : c.supplies)
+    plan.stop_criteria_from = std::max(plan.stop_criteria_from, supply.until.value_or(c.run.until));
+  plan.stop_criteria.push_back({"supply_lag", none});
+  const auto returns = [](const beds::SinkKeys& sink) { return sink.recirculation.has_value(); };
+  if (std::any_of(c.sinks.begin(), c.sinks.end(), returns)) plan.stop_criteria.push_back({"returning_grains", none});
+}
+
 // Sets the criteria that end the run early.
 void set_end(const Case& c, loop::LoopPlan& plan) {
   if (c.run.until_at_rest && c.run.until_at_rest->quantile < 1.0) {
@@ -157,6 +170,7 @@ void set_end(const Case& c, loop::LoopPlan& plan) {
     plan.stop_criteria_meaning = "motion without end";
     plan.steps_between_convergence_checks = 20;  // grains that take off are soon too fast for the time step
   }
+  if (c.run.until_at_rest) wait_for_turnover(c, plan);
 }
 
 loop::LoopPlan plan_of(const Case& c, const Command& command, const RunPaths& paths, const RunHistory& history,

@@ -85,18 +85,22 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
 std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
                         const System& system) {
   if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};
+  const std::vector<Diagnostic> figures = system.diagnostics();
+  const auto figure = [&figures](const char* name) { return find_diagnostic(figures, name).value_or(0.0); };
+  if (system.time() < plan.stop_criteria_from || figure("supply_lag") > 0.0 || figure("returning_grains") > 0.0)
+    return "not at rest: grains were still to come in, by a supply or on their way back; continue with --restart and a "
+           "later --until";
   if (c.run.until_at_rest->quantile < 1.0)
     return fmt::format(
         "not at rest at the last check (every {} steps): a share of {:.3g} of the grains is moving, and a share "
         "of {:g} at rest allows {:.3g}; continue with --restart and a later --until",
-        plan.steps_between_convergence_checks,
-        find_diagnostic(system.diagnostics(), dem::GrainSystem::restless_share_diagnostic).value_or(0.0),
+        plan.steps_between_convergence_checks, figure(dem::GrainSystem::restless_share_diagnostic),
         c.run.until_at_rest->quantile, 1.0 - c.run.until_at_rest->quantile);
-  const double speed = find_diagnostic(system.diagnostics(), dem::GrainSystem::largest_speed_diagnostic).value_or(0.0);
   return fmt::format(
       "not at rest: the fastest grain moves at {:.2g} m/s (run.until_at_rest asks for {:g} m/s and {:g} "
       "m/s^2); continue with --restart and a later --until",
-      speed, c.run.until_at_rest->largest_speed, c.run.until_at_rest->largest_acceleration);
+      figure(dem::GrainSystem::largest_speed_diagnostic), c.run.until_at_rest->largest_speed,
+      c.run.until_at_rest->largest_acceleration);
 }
 
 }  // namespace thalweg::driver

@@ -200,6 +200,11 @@ void check_supplies(const Case& c, const io::YamlDocument& document) {
           key + ".transport_rate",
           "q* has no meaning without a fluid in which the grains are heavier; give rate in grains/s or "
           "mass_rate in kg/s");
+    if (c.run.until_at_rest && !c.supplies[n].until)
+      throw document.error("run.until_at_rest",
+                           fmt::format("the grains are at rest when no more come in, and supply {} brings them to the "
+                                       "end of the run; give {}.until in s, or remove the section",
+                                       n, key));
   }
   for (std::size_t n = 0; n < c.sinks.size(); ++n)
     at_place(document, fmt::format("sinks.{}", n), [&] { check(c.sinks[n], box); });

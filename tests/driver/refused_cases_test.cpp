@@ -416,6 +416,11 @@ INSTANTIATE_TEST_SUITE_P(
             {"contact.walls={friction: 0.1}"},
             {"contact.walls.friction = 0.1: the friction of walls is contact.wall_friction"}},
         Bad{"wet_rest", {"run.until_at_rest={}"}, {"run.until_at_rest", "grains in a fluid are never at rest"}},
+        Bad{"rest_beside_an_endless_supply",
+            {"system=grains", "fluid=null", "output=null",
+             "domain.boundaries={x: periodic, y: periodic, bottom: no_slip, top: no_slip}", "run.until_at_rest={}",
+             "supplies=[{population: 0, rate: 4, region: {lower: [0.02, 0, 0.06], upper: [0.03, 0.01, 0.07]}}]"},
+            {"run.until_at_rest", "supply 0 brings them to the end of the run", "give supplies.0.until in s"}},
         Bad{"no_run", {"run=null"}, {"case.yaml:1: run is missing: give a section"}}),
     [](const auto& bad) { return bad.param.name; });
 

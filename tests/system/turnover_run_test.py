@@ -81,6 +81,19 @@ run: {until: 0.01}
 output: {grains: {every: 2.0e-4}}
 """
 
+# Spheres that fall one by one onto a rough floor, at most 45 mm deep: each is still 0.2 s after it has come in.
+POUR = """
+system: grains
+name: pour
+domain: {size: [0.02, 0.02, 0.06], spacing: 2.0e-3, boundaries: {x: periodic, y: periodic, bottom: no_slip, top: no_slip}}
+gravity: {magnitude: 9.8}
+grains:
+  - {diameter: 4.0e-3, density: 2500, placement: {positions: [[0.01, 0.01, 0.01]]}}
+contact: {normal_stiffness: 10000, restitution: 0.3, friction: 0.5, rolling_friction: 0.2, wall_rolling_friction: 0.2}
+run: {until: 3, until_at_rest: {largest_speed: 2.0e-3, largest_acceleration: 0.1}}
+output: {series: {every: 0.1}}
+"""
+
 
 class TurnoverRun(ProgramTest):
     CASE = DRY
@@ -272,6 +285,31 @@ class TurnoverRun(ProgramTest):
         self.assert_refused("run", self.case, "--out", self.folder / "two", "--restart", self.folder / "one", *settings,
                             "--until", "0.03", "--set", "analysis.reference_diameter=0.01",
                             words=["Supply 0 brings", "set these back"])
+
+
+class PourRun(ProgramTest):
+    CASE = POUR
+
+    def end(self, *settings):
+        self.run_well("run", self.case, "--out", self.folder / "run", "--overwrite", *settings)
+        self.assertIn("finished, all grains at rest", (self.folder / "run/run.log").read_text())
+        return self.summary("run")
+
+    def test_rest_waits_for_the_last_grain_of_a_supply(self):
+        summary = self.end("--set", "supplies=[{population: 0, rate: 4, until: 2, "
+                                    "region: {lower: [0.005, 0.005, 0.02], upper: [0.015, 0.015, 0.05]}}]")
+        self.assertEqual(summary["figures"]["supplied_grains"], 8)
+        self.assertGreater(summary["simulated_time"], 2.0)
+        self.assertLess(summary["simulated_time"], 2.7)
+
+    def test_rest_waits_for_a_grain_on_its_way_back(self):
+        summary = self.end("--set", "grains.0.placement.positions=[[0.017, 0.01, 0.01]]", "--set",
+                           "sinks=[{region: {lower: [0.014, 0, 0], upper: [0.02, 0.02, 0.02]}, recirculation: "
+                           "{delay: 1, region: {lower: [0.006, 0.008, 0.03], upper: [0.007, 0.012, 0.04]}}}]")
+        self.assertEqual(summary["figures"]["recirculated_grains"], 1)
+        self.assertEqual(summary["figures"]["grains"], 1)
+        self.assertGreater(summary["simulated_time"], 1.0)
+        self.assertLess(summary["simulated_time"], 1.7)
 
 
 program.main()
