@@ -42,6 +42,7 @@ struct ShapeKeys {
   std::optional<std::int64_t> spheres;  // see ClumpFit
   std::optional<double> tolerance;
   std::string made_from = {};  // the file, absolute; empty: of no surface
+  double inscribed = 1.0;      // share of the surface's volume that its spheres held before they grew
 
   // Whatever they are made from.
   bool operator==(const ShapeKeys& other) const { return clump == other.clump && body == other.body; }

@@ -1,6 +1,7 @@
 #include "beds/population/population_clumps.hpp"
 
 #include "beds/shapes/mesh_clump.hpp"
+#include "beds/shapes/union_by_lines.hpp"
 #include "core/base/counter_random.hpp"
 #include "core/base/error.hpp"
 #include "core/geometry/symmetric_pairs.hpp"
@@ -74,6 +75,7 @@ void take_surface(ShapeKeys& shape, const TriangleMesh& surface) {
   const MeshClump made = clump_of(surface, fit);
   shape.clump.clear();
   for (const dem::PlacedSphere& sphere : made.spheres) shape.clump.push_back({sphere.position, 2.0 * sphere.radius});
+  shape.inscribed = union_by_lines(made.inscribed).volume / made.body.volume;
   shape.body.emplace();
   shape.body->volume = made.body.volume;
   shape.body->centre = made.body.centre;

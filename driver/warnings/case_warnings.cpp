@@ -15,6 +15,7 @@
 #include "driver/warnings/drive_warnings.hpp"
 #include "driver/warnings/plan_warnings.hpp"
 #include "driver/warnings/remedy.hpp"
+#include "driver/warnings/shape_warnings.hpp"
 #include "driver/warnings/solid_warnings.hpp"
 #include "driver/warnings/unit_warnings.hpp"
 
@@ -336,6 +337,7 @@ std::vector<WarningRule> rules_for(const Case& c) {
                                  with_fluid<recycling>,
                                  with_fluid<outlets>,
                                  with_fluid<floating_grains>,
+                                 unlike_clumps,
                                  sliding_bed,
                                  with_fluid<fast_flow>,
                                  with_fluid<compression>,

@@ -1,5 +1,6 @@
 #include "beds/shapes/mesh_clump.hpp"
 
+#include "beds/population/population_clumps.hpp"
 #include "beds/shapes/shape_figures.hpp"
 #include "core/base/error.hpp"
 #include "tests/beds/shapes/made_up_surfaces.hpp"
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -79,6 +81,23 @@ TEST(MeshClump, ComesNearerWithMoreSpheres) {
   EXPECT_LT(of_many.inscribed_volume, 1.0);
   EXPECT_LT(of_many.mean_to_clump, of_few.mean_to_clump);
   EXPECT_LT(of_many.moment_errors.cwiseAbs().maxCoeff(), 0.03);
+}
+
+// The largest sphere in a cube has pi/6 of it. One in a plate has the height t of the plate, so that 20 of them hold at
+// most 20 pi t^2/6 of a plate of 1 x 1 x t.
+TEST(MeshClump, SaysHowMuchOfASurfaceItsSpheresHeldBeforeTheyGrew) {
+  const auto held = [](double height) {
+    ShapeKeys shape;
+    shape.spheres = 20;
+    take_surface(shape, block(Vec3::Zero(), 0.01 * Vec3(1.0, 1.0, height)));
+    return shape.inscribed;
+  };
+  EXPECT_EQ(ShapeKeys{}.inscribed, 1.0);  // of spheres that are given
+  EXPECT_GT(held(1.0), M_PI / 6.0 + 0.1);
+  EXPECT_LT(held(1.0), 1.0);
+  const double most = 20.0 * M_PI / 6.0 * 0.05 * 0.05;
+  EXPECT_GT(held(0.05), 0.9 * most);
+  EXPECT_LT(held(0.05), 1.01 * most);
 }
 
 TEST(MeshClump, StopsAtTheToleranceAndIsTheSameOnEveryCall) {
