@@ -34,6 +34,7 @@ struct ColumnParameters {
   int cells = 0;
   double spacing = 0.0;  // m
 
+  double height() const { return cells * spacing; }                                             // m
   double shear_speed() const { return mixture.shear_speed(std::hypot(gravity_x, gravity_z)); }  // m/s
 };
 

@@ -190,20 +190,21 @@ double ContinuumSystem::driving_stress(std::size_t face) const {
   return parameters_.column.gravity_x * mass;
 }
 
-// m above the floor, between the middles of the two cells where phi falls below half of the densest, seen from above.
+// m above the floor, between the middles of the two cells where phi falls below half of the densest, seen from above:
+// the top of the column where the grains reach it, 0 where no cell is as dense.
 double ContinuumSystem::surface_height() const {
   const std::vector<double>& phi = equations_.state_of(unknowns_).fraction;
   const double half = 0.5 * parameters_.column.closures.rheology.densest_fraction, dz = parameters_.column.spacing;
+  if (phi.back() >= half) return parameters_.column.height();
   for (std::size_t i = phi.size() - 1; i-- > 0;)
-    if (phi[i] >= half && phi[i + 1] < half)
-      return (static_cast<double>(i) + 0.5 + (phi[i] - half) / (phi[i] - phi[i + 1])) * dz;
+    if (phi[i] >= half) return (static_cast<double>(i) + 0.5 + (phi[i] - half) / (phi[i] - phi[i + 1])) * dz;
   return 0.0;
 }
 
 // Pa: rho_f g_x times the depth of the water above the surface.
 double ContinuumSystem::bed_stress() const {
   const ColumnParameters& column = parameters_.column;
-  return column.mixture.fluid_density * column.gravity_x * (column.cells * column.spacing - surface_height());
+  return column.mixture.fluid_density * column.gravity_x * (column.height() - surface_height());
 }
 
 double ContinuumSystem::largest_grain_speed() const {

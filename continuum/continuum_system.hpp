@@ -54,9 +54,10 @@ public:
   Snapshot snapshot() const override;
 
   // q_s (m^2/s), q_star (1), shields_number (1: of the stress on the surface), bed_stress (Pa), surface_height (m:
-  // where phi is half of the densest), moving_depth (m: of grains below the surface faster than a hundredth of the
-  // fastest grain at or below it), largest_grain_speed, largest_fluid_speed (m/s), solid_volume (m), integrator_steps
-  // (1), unsteadiness (1), and with creep creep_decay_length, creep_decade_length (m).
+  // where phi is half of the densest, or the top where the grains reach it), moving_depth (m: of grains below the
+  // surface faster than a hundredth of the fastest grain at or below it), largest_grain_speed, largest_fluid_speed
+  // (m/s), solid_volume (m), integrator_steps (1), unsteadiness (1), and with creep creep_decay_length,
+  // creep_decade_length (m).
   //
   // unsteadiness: the larger of two changes over the latest step, of momentum, over the driving stress on the floor
   // times the step, and of q_s, relative (to 1e-4 sqrt((s - 1) g d^3) where it is less). 1 before the first step.

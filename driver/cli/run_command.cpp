@@ -332,6 +332,7 @@ private:
     const std::vector<Diagnostic> bed = final_bed(communicator_, case_, *system_);
     identity_.memory = memory_use(communicator_);
     print_outcome(identity_, record, *system_, observers_, bed, phases, paths_.folder, log);
+    if (const std::string remark = full_column_remark(case_, *system_); !remark.empty()) log.line(remark);
     if (const std::string remark = rest_remark(case_, plan, record, *system_); !remark.empty()) log.line(remark);
     const io::JsonObject summary =
         summary_of(identity_, *system_, record, observers_, start_point_.run_history, bed, phases);

@@ -82,6 +82,15 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
         record.reason, system.time()));
 }
 
+std::string full_column_remark(const Case& c, const System& system) {
+  if (c.system != SystemKind::continuum) return {};
+  const double surface = find_diagnostic(system.diagnostics(), "surface_height").value_or(0.0);
+  if (surface < column_of(c).column.height()) return {};
+  return "warning: the grains fill the column up to its top, so that no clear water is left over them, and bed_stress "
+         "and shields_number are 0; give deeper water (column.depth, or a smaller gravity.slope with the same "
+         "column.shields_number)";
+}
+
 std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
                         const System& system) {
   if (!c.run.until_at_rest || !record.finished || !record.early.empty()) return {};

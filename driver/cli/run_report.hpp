@@ -37,6 +37,9 @@ void print_outcome(const RunIdentity& identity, const loop::LoopRecord& record, 
                    const Observers& observers, const std::vector<Diagnostic>& bed,
                    const std::vector<loop::PhaseShare>& phases, const io::RunFolder& folder, loop::Log& log);
 
+// A warning where the grains of a column have reached its top, so that there is no water over them; else empty.
+std::string full_column_remark(const Case& c, const System& system);
+
 // Explains why a run with until_at_rest reached its end time; empty if its grains are at rest or the key is not set.
 std::string rest_remark(const Case& c, const loop::LoopPlan& plan, const loop::LoopRecord& record,
                         const System& system);

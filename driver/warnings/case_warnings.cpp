@@ -10,6 +10,7 @@
 #include "driver/estimate/stability.hpp"
 #include "driver/input/run_context.hpp"
 #include "driver/warnings/boundary_warnings.hpp"
+#include "driver/warnings/column_warnings.hpp"
 #include "driver/warnings/consistent_remedy.hpp"
 #include "driver/warnings/contact_warnings.hpp"
 #include "driver/warnings/drive_warnings.hpp"
@@ -354,8 +355,8 @@ std::vector<WarningRule> rules_for(const Case& c) {
                                  rebound_warnings,
                                  observer_warnings})
     rules.push_back(rule);
-  const std::vector<WarningRule> plan = plan_rules();
-  rules.insert(rules.end(), plan.begin(), plan.end());
+  for (const std::vector<WarningRule>& more : {column_rules(), plan_rules()})
+    rules.insert(rules.end(), more.begin(), more.end());
   return rules;
 }
 

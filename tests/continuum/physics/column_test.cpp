@@ -32,6 +32,17 @@ SystemParameters coarse_column() {
   return parameters;
 }
 
+// On a slope of 0.3 the shear stress of the bed itself, (phi rho_s + (1 - phi) rho_f) tan/(phi (rho_s - rho_f)) = 0.61
+// of the pressure of the grains, is above mu_1: all of it flows, and spreads over the few diameters of water.
+SystemParameters flooded_column() {
+  ContinuumKeys keys = coarse_keys();
+  keys.column.shields_number = 0.5;
+  const double angle = std::atan(0.3);
+  SystemParameters parameters = system_parameters(keys, gravity * std::sin(angle), gravity * std::cos(angle));
+  parameters.time_step = 5.0;
+  return parameters;
+}
+
 double diagnostic(const System& system, const std::string& name) {
   return *find_diagnostic(system.diagnostics(), name);
 }
@@ -87,6 +98,20 @@ TEST(Column, AStateGoesOnInCellsOfItsOwnHeightOnly) {
   EXPECT_NO_THROW(load_with_height(1.0 + 1e-12));
   // Heights as for a slope of 0.0161 in place of 0.016, with as many cells.
   for (const double factor : {0.9938, 1.0 / 0.9938, 1.0 + 1e-6}) EXPECT_THROW(load_with_height(factor), InputError);
+}
+
+TEST(Column, GrainsThatReachTheTopLeaveNoClearWater) {
+  const SystemParameters parameters = flooded_column();
+  ContinuumSystem column(MPI_COMM_SELF, parameters);
+  const double bed = parameters.bed_cells * parameters.column.spacing;
+  EXPECT_NEAR(diagnostic(column, "surface_height"), bed, parameters.column.spacing);
+  column.advance();
+  EXPECT_GT(profile(column, "solid_fraction").back(), 0.31);
+  EXPECT_EQ(diagnostic(column, "surface_height"), parameters.column.height());
+  EXPECT_EQ(diagnostic(column, "bed_stress"), 0.0);
+  EXPECT_EQ(diagnostic(column, "shields_number"), 0.0);
+  EXPECT_GT(diagnostic(column, "moving_depth"), bed);
+  EXPECT_LE(diagnostic(column, "moving_depth"), parameters.column.height());
 }
 
 TEST(Column, ConservesSolidsAndComesToTheBalanceOfStresses) {
