@@ -3,6 +3,7 @@
 #include "beds/packing/packing.hpp"
 #include "core/base/error.hpp"
 #include "core/base/shell_word.hpp"
+#include "driver/case/limit_text.hpp"
 #include "driver/cost/run_cost.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
@@ -62,6 +63,8 @@ struct Draft {
 };
 
 double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
+
+double rounded_up(double value, int digits) { return std::stod(at_least_text(value, digits)); }
 
 // m, the least whole number of cells of at least this length.
 double whole(double length, double spacing) { return std::ceil(length / spacing * (1.0 - 1e-9)) * spacing; }
@@ -151,18 +154,21 @@ double grain_time(const Experiment& experiment) {
   return std::sqrt(sizes_of(experiment).median / (excess * experiment.gravity));
 }
 
-// Start, beginning of the means and end, by the flow of the case.
+// Start, beginning of the means and end, by the flow of the case. Grains in a slow flow respond more slowly than by
+// their weight, and their window is at least a share of the time before it.
 void plan_time(const Case& c, const Experiment& experiment, Draft& draft) {
-  constexpr double grain_times_to_settle = 20.0, grain_times_a_turnover = 20.0;
+  constexpr double grain_times_to_settle = 20.0, grain_times_a_turnover = 20.0, least_share = 0.25;
   const FlowEstimate flow = flow_estimate(c);
   draft.log_profile = !flow.laminar;
   const double of_grains = grain_time(experiment);
   const double turnover = flow.laminar ? 0.0 : flow.depth / flow.friction_velocity;
   const double developed = flow.laminar ? flow.spin_up : turnover;
+  const double before = std::max(developed, grain_times_to_settle * of_grains);
   const double window =
-      standard_of(experiment.accuracy).window * std::max(turnover, grain_times_a_turnover * of_grains);
-  draft.from = rounded(1.1 * std::max(developed, grain_times_to_settle * of_grains), 2);
-  draft.until = rounded(draft.from + 1.1 * window, 2);
+      std::max(standard_of(experiment.accuracy).window * std::max(turnover, grain_times_a_turnover * of_grains),
+               least_share * before);
+  draft.from = rounded_up(1.1 * before, 2);
+  draft.until = draft.from + rounded_up(1.1 * window, 2);
 }
 
 constexpr const char* no_case =
@@ -215,7 +221,9 @@ void take_over(const Remedy& remedy, const Experiment& experiment, Draft& draft)
     } else if (change.key == "run.until") {
       draft.until = std::stod(change.value);
     } else if (change.key.starts_with("analysis.") && change.key.ends_with(".from")) {
-      draft.from = std::max(draft.from, std::stod(change.value));
+      const double later = std::max(0.0, std::stod(change.value) - draft.from);
+      draft.from += later;
+      draft.until += later;
     } else if (change.key == "gravity.slope" || change.key == "flow.shields_number") {
       throw InputError(too_steep(experiment, change));
     } else if (change.key.starts_with("fluid.") || change.key.starts_with("contact.") ||

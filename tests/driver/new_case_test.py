@@ -90,6 +90,22 @@ class NewCase(ProgramTest):
         # Half a cell, and a bed that is some grains more or less high.
         self.assertAlmostEqual(figures["depth"], experiment.depth, delta=0.3 * experiment.diameter)
 
+    def test_means_have_a_window(self):
+        """Of 20 sqrt(d/((s - 1) g)) times the 5 turnovers of a look, and in slow flow of a quarter of the time that it
+        takes to develop, which rounding does not take away."""
+        for diameter, shields, depth in [(0.0001, 0.05, 0.003), (0.0002, 0.1, 0.002), (0.0005, 0.02, 0.02)]:
+            with self.subTest(diameter=diameter):
+                result = self.new("--diameter", diameter, "--shields", shields, "--depth", depth)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertNotIn("warning", result.stdout)
+                case = yaml.safe_load(self.case.read_text())
+                starts = [keys["from"] for keys in case["analysis"].values()]
+                window = case["run"]["until"] - max(starts)
+                self.assertGreaterEqual(window, 100 * math.sqrt(diameter / (1.65 * GRAVITY)))
+                self.assertGreaterEqual(window, 0.249 * max(starts))
+                self.assertLess(case["output"]["series"]["every"], 0.01 * window)
+                self.assertGreater(case["output"]["series"]["every"], 0)
+
     def test_hours_make_the_box_smaller(self):
         words = ["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03, "--accuracy", "measure"]
         self.assertEqual(self.new(*words).returncode, 0)
