@@ -71,10 +71,11 @@ std::array<std::int64_t, 3> UniformSites::most(const PeriodicBox& box, const Reg
       most[1] = 1;  // one sheet, in the middle
       continue;
     }
-    // A box made for n grains must take n in spite of rounding; the overlap this allows is far below a millionth.
+    // A box made for n grains must take n in spite of rounding, also that of a spacing whose whole cells make the box.
+    // The overlap that this allows is below allowed_initial_overlap.
     const double extent = sites_extent(box, region, axis, clearance);
-    most[static_cast<std::size_t>(axis)] =
-        std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(extent / (2.0 * radius) + 1e-9)));
+    most[static_cast<std::size_t>(axis)] = std::max<std::int64_t>(
+        0, static_cast<std::int64_t>(std::floor(extent / (2.0 * radius) * (1.0 + whole_number_tolerance))));
   }
   return most;
 }

@@ -105,6 +105,19 @@ TEST(UniformPacking, TakesExactlyAsManyAsFitAndNamesThem) {
   EXPECT_NE(message.find("4032 would"), std::string::npos) << message;
 }
 
+// 72 cells of 0.833333333 mm (nine digits) are 0.06 m less 24 pm, for 12 grains of 5 mm; they are moved together by
+// less than a seed may overlap.
+TEST(UniformPacking, FillsABoxOfRoundedCells) {
+  const auto refused = [](double shorter) {
+    const PeriodicBox box{Vec3((1.0 - shorter) * 0.06, 0.03, 0.05), {true, true, false}};
+    const Region layer{Vec3::Zero(), Vec3(box.size.x(), box.size.y(), (1.0 - shorter) * 5e-3)};
+    return refusal([&] { check(seeds_at(uniform_packing(box, layer, 72, 2.5e-3, 0.0, 1), 2.5e-3), box, {}); });
+  };
+  EXPECT_EQ(refused(1.0 - 72.0 * 0.833333333e-3 / 0.06), "");
+  EXPECT_EQ(refused(0.99e-6), "");
+  EXPECT_NE(refused(1.1e-6).find("0 would"), std::string::npos);  // one layer is too high
+}
+
 TEST(UniformPacking, SpreadsDisksOverTheMiddlePlane) {
   // 12 x 10 disks of 5 mm fill 60 x 50 mm; one more does not fit.
   const PeriodicBox tray{Vec3(0.06, 0.02, 0.05), {true, true, false}};
