@@ -98,8 +98,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
                MPI_Comm communicator) {
   const Ranks ranks(communicator);
   io::YamlDocument document(path, overrides, ranks);
-  const DerivedFlow flow = derived_flow(document, overrides, known, ranks);
-  if (!flow.overrides.empty()) document = io::YamlDocument(path, flow.overrides, ranks);
+  const FlowFilledIn flow = derive_flow(document, known, ranks);
   if (document.find("case") && !document.find("system"))
     throw InputError(fmt::format("{}: this is a sweep, not a case: thalweg sweep {} makes its runs.", path.string(),
                                  shell_word(path.string())));
@@ -107,7 +106,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   Case c;
   io::read_document(document, c);
   c.filled_in.preset = preset;
-  c.filled_in.flow = flow.filled_in;
+  c.filled_in.flow = flow;
   c.flow.reset();
   if (c.system == SystemKind::continuum) {
     check_column(c, document);

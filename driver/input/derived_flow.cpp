@@ -66,9 +66,8 @@ void refuse_circles(const Case& c, const io::YamlDocument& document) {
 }
 
 // The document with a height of the box where there is none, so that it can be read.
-io::YamlDocument with_height(const io::YamlDocument& document, const std::vector<std::string>& overrides,
-                             const Ranks& ranks) {
-  std::vector<std::string> provisional = overrides;
+io::YamlDocument with_height(const io::YamlDocument& document) {
+  io::YamlDocument tried = document;
   if (const io::YamlNode* given = size_of(document); given && given->items.size() == 2) {
     const std::vector<io::YamlNode>& size = given->items;
     const auto number = [&](const io::YamlNode& node) {
@@ -77,10 +76,11 @@ io::YamlDocument with_height(const io::YamlDocument& document, const std::vector
       if (end != node.text.c_str() && *end == '\0' && value > 0.0 && std::isfinite(value)) return value;
       throw document.error("domain.size", "expected numbers in m above 0, for example [0.06, 0.0105]");
     };
-    provisional.push_back(fmt::format("domain.size=[{}, {}, {:.9g}]", size[0].text, size[1].text,
-                                      tall * (number(size[0]) + number(size[1]))));
+    tried.complete(
+        "domain.size",
+        fmt::format("[{}, {}, {:.9g}]", size[0].text, size[1].text, tall * (number(size[0]) + number(size[1]))),
+        "flow");
   }
-  io::YamlDocument tried(document.path(), provisional, ranks);
   lay_preset_beneath(tried);
   return tried;
 }
@@ -149,10 +149,9 @@ double slope_of(const Case& c, double stress_height, double depth, const io::Yam
 
 }  // namespace
 
-DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
-                         const KnownBeds& known, const Ranks& ranks) {
+FlowFilledIn derive_flow(io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks) {
   if (!document.find("flow")) return {};
-  const io::YamlDocument tried = with_height(document, overrides, ranks);
+  const io::YamlDocument tried = with_height(document);
   Case c;
   io::read_document(tried, c);  // refuses misspelt keys, before any is missed
   const FlowFilledIn question = question_of(document);
@@ -165,16 +164,16 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
 
   // (s - 1) d tau*, the product of sine and hydraulic radius, m.
   const double stress_height = excess * grain.diameter * c.flow->shields_number.value_or(0.0);
-  DerivedFlow derived{overrides, question};
+  FlowFilledIn filled_in = question;
   std::vector<std::string> follows;
   double depth = c.domain.size.z() - bed;
   if (question.height) {
-    if (!c.flow->depth) derived.filled_in.shields_number = c.flow->shields_number;
+    if (!c.flow->depth) filled_in.shields_number = c.flow->shields_number;
     depth = c.flow->depth ? *c.flow->depth : depth_for(c, document);
     const double height = box_height(c, depth);
     depth = height - bed;
     const std::string size = fmt::format("[{:.9g}, {:.9g}, {:.9g}]", c.domain.size.x(), c.domain.size.y(), height);
-    derived.overrides.push_back("domain.size=" + size);
+    document.complete("domain.size", size, "flow");
     follows.push_back("domain.size: " + size);
   }
   if (!(depth > 0.0))
@@ -183,12 +182,12 @@ DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std
                                                     bed));
   if (question.slope) {
     const std::string slope = fmt::format("{:.6g}", slope_of(c, stress_height, depth, document));
-    derived.overrides.push_back("gravity.slope=" + slope);
+    document.complete("gravity.slope", slope, "flow");
     follows.push_back("gravity.slope: " + slope);
   }
-  derived.filled_in.text =
+  filled_in.text =
       fmt::format("{}, for {:.4g} m of water over a bed of {:.4g} m", fmt::join(follows, " and "), depth, bed);
-  return derived;
+  return filled_in;
 }
 
 }  // namespace thalweg::driver

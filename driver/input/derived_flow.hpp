@@ -9,19 +9,11 @@
 #include "driver/input/bed_placement.hpp"
 #include "io/text/yaml_document.hpp"
 
-#include <string>
-#include <vector>
-
 namespace thalweg::driver {
 
-struct DerivedFlow {
-  std::vector<std::string> overrides;  // those given, and the keys that follow; empty: the case has no section flow
-  FlowFilledIn filled_in;              // text: "gravity.slope: 0.0453, for ..."
-};
-
-// Flow of a case file and its overrides. Throws InputError, with file and line, where the section does not determine
-// exactly one flow, or asks for one that does not exist. Collective.
-DerivedFlow derived_flow(const io::YamlDocument& document, const std::vector<std::string>& overrides,
-                         const KnownBeds& known, const Ranks& ranks);
+// Adds the keys that follow to a document that has the section; text of what is filled in: "gravity.slope: 0.0453, for
+// ...". Throws InputError, with file and line, where the section does not determine exactly one flow, or asks for one
+// that does not exist. Collective.
+FlowFilledIn derive_flow(io::YamlDocument& document, const KnownBeds& known, const Ranks& ranks);
 
 }  // namespace thalweg::driver

@@ -221,11 +221,16 @@ YamlDocument::YamlDocument(const std::filesystem::path& path, const std::vector<
   if (root_.kind == YamlNode::Kind::scalar && root_.text.empty()) root_.kind = YamlNode::Kind::section;
   if (root_.kind != YamlNode::Kind::section)
     throw InputError(fmt::format("{}:1: expected keys with values, for example system: resolved.", name));
-  for (const std::string& override_text : overrides) apply(override_text);
+  for (const std::string& override_text : overrides) apply(override_text, "--set " + override_text);
 }
 
-void YamlDocument::apply(const std::string& override_text) {
-  const std::string place = "--set " + override_text;
+void YamlDocument::complete(const std::string& key_path, const std::string& value, const std::string& from) {
+  const YamlNode* node = find(key_path);
+  if (!node) node = find(from);
+  apply(key_path + "=" + value, std::string((node ? *node : root_).place));
+}
+
+void YamlDocument::apply(const std::string& override_text, const std::string& place) {
   const std::size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError(fmt::format("{}: expected KEY=VALUE, for example --set run.until=10.", place));

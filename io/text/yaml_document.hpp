@@ -54,6 +54,10 @@ public:
   // aliases that multiply to more than a million values, an override that names no key.
   YamlDocument(const std::filesystem::path& path, const std::vector<std::string>& overrides, const Ranks& ranks = {});
 
+  // Gives a key a value that follows from another key of the document: as an override does, but its place stays where
+  // it has one, and is else that of the other key.
+  void complete(const std::string& key_path, const std::string& value, const std::string& from);
+
   // Adds the values of another tree, section by section, where the document has none of the same key, no override has
   // taken it out, and it is not one of `without` or inside it.
   LaidBeneath lay_beneath(const YamlNode& other, const std::vector<std::string>& without);
@@ -75,7 +79,7 @@ public:
   InputError error(const std::string& key_path, const InputError& of_file) const;
 
 private:
-  void apply(const std::string& override_text);
+  void apply(const std::string& override_text, const std::string& place);
   void lay_beneath(YamlNode& section, const YamlNode& other, const std::string& key_path,
                    const std::vector<std::string>& without, LaidBeneath& keys) const;
 

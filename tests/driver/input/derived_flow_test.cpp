@@ -134,6 +134,14 @@ TEST(DerivedFlow, RefusesMoreOrLessThanOneFlow) {
   refused({"flow={}"}, "the section is empty");
 }
 
+// What follows stands at the place of what was given: --set domain.size is said only where it was.
+TEST(DerivedFlow, SaysThePlaceOfWhatWasGiven) {
+  EXPECT_EQ(refusal_of({"domain.spacing=0.00032"}).find("--set"), std::string::npos);
+  EXPECT_NE(refusal_of({"domain.spacing=0.00032"}).find("domain.size = [0.0594, 0.010725, "), std::string::npos);
+  EXPECT_NE(refusal_of({"domain.size=[0.0594, 0.0108]"}).find("--set domain.size=[0.0594, 0.0108]: "),
+            std::string::npos);
+}
+
 TEST(DerivedFlow, RefusesFlowsThatDoNotFollowFromASlope) {
   const auto refused = [](const std::vector<std::string>& overrides, const std::string& reason) {
     const std::string said = refusal_of(overrides);
