@@ -50,9 +50,9 @@ CoreSpeed measure_core_speed(const Case& c, MPI_Comm communicator) {
   const std::unique_ptr<System> system = build_system(sample.c, MPI_COMM_SELF, decomposition_of(sample.c, {1, 1, 1}));
   MPI_Barrier(communicator);
   const CoreSpeed own = time_steps(*system);
-  const double shares = size_of(communicator) * sample.share;
-  return {size_of(communicator), sum_over_ranks(communicator, own.of_cells) / shares,
-          sum_over_ranks(communicator, own.of_grains) / shares};
+  const int cores = size_of(communicator);
+  return {cores, sum_over_ranks(communicator, own.of_cells) / (cores * sample.share),
+          sum_over_ranks(communicator, own.of_grains) / (cores * sample.share_of_grains)};
 }
 
 }  // namespace thalweg::driver

@@ -10,7 +10,7 @@ namespace thalweg::driver {
 struct CoreSpeed {
   int cores = 1;           // cores that were busy at the same time
   double of_cells = 0.0;   // s a step of the whole case on one of them: sweep, walls
-  double of_grains = 0.0;  // s, the same: map, links, loads, sub-steps
+  double of_grains = 0.0;  // s, the same, in the mean of the run: map, links, loads, sub-steps
 
   double step() const { return of_cells + of_grains; }
 };

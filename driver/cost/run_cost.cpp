@@ -98,9 +98,8 @@ Cost cost_of(const Case& c, double bandwidth) {
   cost.cells = has_fluid(c) ? static_cast<double>(n[0]) * n[1] * n[2] : 0.0;
   cost.steps = std::ceil(c.run.until / step_time(c) * (1.0 - 1e-12));
   cost.cell_updates = cost.cells * cost.steps;
-  const double rows = static_cast<double>(grain_rows(c)), most = static_cast<double>(most_rows(c));
-  const double growth = rows > 0.0 ? 0.5 * (rows + most) / rows : 1.0;  // in the mean, of grains that are supplied
-  cost.grain_steps = growth * rows * static_cast<double>(grain_steps(c)) * cost.steps;
+  const double growth = mean_growth(c);
+  cost.grain_steps = growth * static_cast<double>(grain_rows(c)) * static_cast<double>(grain_steps(c)) * cost.steps;
   const double of_memory = bandwidth > 0.0 ? cell_cost * bytes_per_cell_update(bytes_per_value(c)) / bandwidth : 0.0;
   const double precision = c.fluid.precision == coupling::Precision::single ? 1.0 : cost_of_doubles;
   cost.core_seconds =

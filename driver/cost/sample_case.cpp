@@ -4,6 +4,7 @@
 #include "core/state/bed.hpp"
 #include "dem/laws/contact_laws.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,27 +19,27 @@ constexpr double most_cells = 1.5e6, most_grains = 4000.0, least_diameters = 8.0
 // Diameters between the centres of neighbours in the bed: each grain touches six others, as many as in a settled bed.
 constexpr double between_centres = 0.999;
 
+// Grains that the box holds in the mean of the run.
+double mean_count(const Case& c) { return mean_growth(c) * static_cast<double>(grain_count(c)); }
+
 // Length of the box along x, m.
 double length_of(const Case& c) {
   const Index3 n = cells_of(c.domain);
   double share = 1.0;
   if (has_fluid(c)) share = std::min(share, most_cells / (static_cast<double>(n[0]) * n[1] * n[2]));
-  if (!c.grains.empty()) share = std::min(share, most_grains / static_cast<double>(grain_count(c)));
+  if (!c.grains.empty()) share = std::min(share, most_grains / mean_count(c));
   const double least = std::max(least_diameters * largest_diameter(c), 4.0 * c.domain.spacing);
   const double length = std::max(share * c.domain.size.x(), least);
   return std::min(c.domain.size.x(), std::round(length / c.domain.spacing) * c.domain.spacing);
 }
 
-// Diameters of all grains (m), one in `stride`; those of a bed file from small to large.
+// Diameters of all grains (m), one in `stride`, or several times as many; those of a bed file from small to large.
 std::vector<double> some_diameters(const Case& c, double stride) {
   std::vector<double> diameters;
   double next = 0.5 * stride, number = 0.0;
   const auto add = [&](std::int64_t count, const auto& diameter_of) {
     for (std::int64_t grain = 0; grain < count; ++grain, ++number)
-      if (number >= next) {
-        diameters.push_back(diameter_of(static_cast<std::size_t>(grain)));
-        next += stride;
-      }
+      for (; next < number + 1.0; next += stride) diameters.push_back(diameter_of(static_cast<std::size_t>(grain)));
   };
   for (const beds::Population& population : c.grains) {
     if (!population.from_file())
@@ -72,7 +73,7 @@ std::vector<BedGrain> bed_of(const std::vector<double>& diameters, double densit
 
 beds::Population grains_of(const Case& c, const Vec3& size, double share) {
   const model_fluid::MeanGrain mean = mean_grain(c);
-  std::vector<double> diameters = some_diameters(c, 1.0 / share);
+  std::vector<double> diameters = some_diameters(c, 1.0 / (share * mean_growth(c)));
   beds::Population grains;
   grains.density = mean.mass / mean.volume;
   grains.fixed = !has_free_grains(c);
@@ -110,7 +111,7 @@ void suit_contacts_to_step(Case& s) {
 }  // namespace
 
 Sample sample_of(const Case& c) {
-  Sample sample{c, 1.0};
+  Sample sample{c, 1.0, 1.0};
   Case& s = sample.c;
   s.domain.size.x() = length_of(c);
   sample.share = s.domain.size.x() / c.domain.size.x();
@@ -126,6 +127,7 @@ Sample sample_of(const Case& c) {
   s.run.until_at_rest.reset();
   if (c.grains.empty()) return sample;
   s.grains.push_back(grains_of(c, s.domain.size, sample.share));
+  sample.share_of_grains = static_cast<double>(s.grains.front().count) / mean_count(c);
   suit_contacts_to_step(s);
   return sample;
 }

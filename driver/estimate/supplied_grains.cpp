@@ -55,6 +55,11 @@ std::int64_t most_rows(const Case& c) {
   return at_start + static_cast<std::int64_t>(std::min(supplied, 1e15));
 }
 
+double mean_growth(const Case& c) {
+  const double rows = static_cast<double>(grain_rows(c)), most = static_cast<double>(most_rows(c));
+  return rows > 0.0 ? 0.5 * (rows + most) / rows : 1.0;
+}
+
 double ids_of_run(const Case& c) {
   double rounds = 0.0, a_round = 0.0;  // each has ids for one grain of every supply (dem/supply/turnover.hpp)
   for (const beds::SupplyKeys& supply : c.supplies) {

@@ -118,6 +118,20 @@ TEST(SampleCase, IsAShortPieceOfTheWhole) {
   EXPECT_NEAR(cells_of(sample.c.domain)[0] * c.domain.spacing, sample.c.domain.size.x(), 1e-12);
 }
 
+// A hundred grains per second for 30 s come to a bed of 1000: 2500 in the mean.
+TEST(SampleCase, IsOfTheGrainsThatTheWholeHasInTheMean) {
+  Case c = wide_bed();
+  c.run.until = 30.0;
+  const Sample still = sample_of(c);
+  EXPECT_NEAR(still.share_of_grains, still.share, 1e-3);
+  beds::SupplyKeys& supply = c.supplies.emplace_back();
+  supply.rate = 100.0;
+  const Sample fed = sample_of(c);
+  EXPECT_EQ(fed.share, still.share);
+  EXPECT_NEAR(fed.share_of_grains, fed.share, 1e-3);
+  EXPECT_NEAR(static_cast<double>(fed.c.grains[0].count), 2500.0 * fed.share, 1.0);
+}
+
 // Their regions may lie beyond its end, and their populations are not in it.
 TEST(SampleCase, HasNeitherSuppliesNorSinks) {
   Case c = wide_bed();
