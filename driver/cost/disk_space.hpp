@@ -11,8 +11,9 @@ namespace thalweg::driver {
 struct DiskSpace {
   double fluid, grains, solids;  // all frames
   double checkpoints;            // those kept, and the one being written
+  double series;                 // series.csv
   double records;                // tracks, probes and the reach
-  double total() const { return fluid + grains + solids + checkpoints + records; }
+  double total() const { return fluid + grains + solids + checkpoints + series + records; }
 };
 DiskSpace disk_space(const Case& c);
 

@@ -59,6 +59,9 @@ TEST(Cost, TakesAccountOfTheLinks) {
   EXPECT_LT(with_grains - water, 1.5e6 * (1.58e6 * 40e-9 + 50.0 * 1000.0 * 400e-9));
 }
 
+// Bytes of the XML of a frame: 2970 of 15 arrays and of the line in the .pvd, measured with one grain.
+double xml(int arrays) { return 1000.0 + 150.0 * arrays; }
+
 // 30 s: 301 frames every 0.1 s, of 5 floats a cell in one layer of cells; 61 of grains; 3 of 30 checkpoints at a time.
 TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
@@ -69,8 +72,8 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   c.output.checkpoint = {.every = 1.0, .every_wall = 0.0, .keep = 2};
   c.analysis.observers.of<analysis::TracksKeys>().emplace().one_in = 3;
   const DiskSpace space = disk_space(c);
-  EXPECT_NEAR(space.fluid, 301.0 * 240.0 * 212.0 * 5.0 * 4.0, 1.0);
-  EXPECT_NEAR(space.grains, 61.0 * 1000.0 * 41.0 * 8.0, 1.0);
+  EXPECT_NEAR(space.fluid, 301.0 * (240.0 * 212.0 * 5.0 * 4.0 + xml(3)), 1.0);
+  EXPECT_NEAR(space.grains, 61.0 * (1000.0 * 41.0 * 8.0 + xml(15)), 1.0);
   EXPECT_NEAR(space.records, 30001.0 * 334.0 * 144.0, 1.0);
   Case reach = c;
   reach.analysis.observers.of<analysis::ReachKeys>() = {.record_every = 0.5, .sections = 24};
@@ -78,12 +81,12 @@ TEST(DiskSpace, IsThatOfFramesCheckpointsAndRecords) {
   const double state = 240.0 * 80.0 * 212.0 * 19.0 * 4.0;
   EXPECT_GT(space.checkpoints, 3.0 * state);
   EXPECT_LT(space.checkpoints, 3.0 * (state + 1000.0 * 1000.0));
-  EXPECT_NE(disk_line(space, 1e12).find(": fluid 306 MB, grains 20 MB, checkpoints"), std::string::npos)
+  EXPECT_NE(disk_line(space, 1e12).find(": fluid 307 MB, grains 20.2 MB, checkpoints"), std::string::npos)
       << disk_line(space, 1e12);
   EXPECT_NE(disk_line(space, 79e6).find("more than the 79 MB that are free in this folder"), std::string::npos);
   Case every_step = c;
   every_step.output.fluid.every = 1e-9;
-  EXPECT_NEAR(disk_space(every_step).fluid, (1.5e6 + 1.0) * 240.0 * 212.0 * 5.0 * 4.0, 1e6);
+  EXPECT_NEAR(disk_space(every_step).fluid, (1.5e6 + 1.0) * (240.0 * 212.0 * 5.0 * 4.0 + xml(3)), 1e6);
   EXPECT_TRUE(any_contains(warnings(every_step), "output.fluid.every = 1e-09 s is less than a step"));
   EXPECT_FALSE(any_contains(warnings(c), "less than a step"));
   Case of_parts = c;
@@ -111,7 +114,7 @@ TEST(DiskSpace, CountsTheTracksOfMembers) {
 TEST(DiskSpace, CountsTheGrainsAndFieldsOfParts) {
   Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
   c.output.grains = {.every = 1.0, .fields = {io::GrainField::radius}};
-  double frames = 31.0 * 1000.0 * 6.0 * 8.0;
+  double frames = 31.0 * (1000.0 * 6.0 * 8.0 + xml(4));
   EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
   const auto add = [&c](double every, const io::GrainSelectionKeys& selection,
                         const std::vector<io::GrainField>& fields) {
@@ -121,20 +124,36 @@ TEST(DiskSpace, CountsTheGrainsAndFieldsOfParts) {
     part.fields = fields;
   };
   add(0.5, {{4, 5, 6}, {}, {}}, {io::GrainField::id, io::GrainField::velocity});
-  frames += 61.0 * 3.0 * 10.0 * 8.0;
+  frames += 61.0 * (3.0 * 10.0 * 8.0 + xml(6));
   EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
   add(10.0, {{}, 0, {}}, {io::GrainField::fluid_stress});
-  frames += 4.0 * 1000.0 * 15.0 * 8.0;
+  frames += 4.0 * (1000.0 * 15.0 * 8.0 + xml(5));
   EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
   // A tenth of a diameter wide: of 5 mm, at most 1.1^3 sqrt(2) = 1.9 have their centres in it.
   add(10.0, {{}, {}, io::BoxKeys{Vec3::Constant(0.01), Vec3::Constant(0.0105)}}, {io::GrainField::id});
-  frames += 4.0 * 2.0 * 7.0 * 8.0;
+  frames += 4.0 * (2.0 * 7.0 * 8.0 + xml(5));
   EXPECT_NEAR(disk_space(c).grains, frames, 1.0);
 
   c.output.fluid.every = 10.0;
-  const double single = disk_space(c).fluid;
+  const double single = disk_space(c).fluid, of_xml = 4.0 * xml(3);
   c.output.fluid.precision = io::FieldPrecision::double_;
-  EXPECT_NEAR(disk_space(c).fluid, single * 36.0 / 20.0, 1.0);  // four reals and one id
+  EXPECT_NEAR(disk_space(c).fluid - of_xml, (single - of_xml) * 36.0 / 20.0, 1.0);  // four reals and one id
+}
+
+// What runs have written: 450 bytes a row of 26 columns without analyses, and 1600 of 112 with twelve of them, two
+// populations and the forces on all faces.
+TEST(DiskSpace, CountsTheSeries) {
+  Case c = testing::read_text(testing::flume);
+  c.output.series.every = 1e-3;
+  c.analysis.observers.of<analysis::TransportRateKeys>().reset();
+  const double rows = 3001.0, plain = disk_space(c).series;
+  EXPECT_GT(plain, rows * 450.0);
+  EXPECT_LT(plain, rows * 2.0 * 450.0);
+  c.analysis.observers.for_each([](auto& keys) { keys.emplace(); });
+  c.analysis.wall_forces.emplace();
+  EXPECT_GT(disk_space(c).series, rows * 1600.0);
+  c.output.series.every = 0.0;
+  EXPECT_EQ(disk_space(c).series, 0.0);
 }
 
 // The figures by which a user plans a run, in lines of their own.
