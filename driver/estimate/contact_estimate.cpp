@@ -3,6 +3,8 @@
 #include "beds/population_seeds.hpp"
 #include "dem/laws/contact_laws.hpp"
 #include "dem/laws/material.hpp"
+#include "dem/motion/prescribed_motion.hpp"
+#include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/reference_grain.hpp"
@@ -44,9 +46,11 @@ bool any_wall(const Case& c) {
   return !c.walls.empty() || !c.solids.empty() || std::find(periodic.begin(), periodic.end(), false) != periodic.end();
 }
 
-// m/s, of free grains that start towards or past those of another population, or a wall, or come in.
+// m/s, of free grains that start towards or past those of another population, or a wall, or come in, or that a wall or
+// a solid meets on its way.
 double starting_speed(const Case& c) {
-  double fastest = fastest_supply(c);
+  double fastest = std::max(fastest_supply(c), speed_off_walls(c));
+  for (const SolidCase& solid : c.solids) fastest = std::max(fastest, largest_speed(solid));
   for (const beds::Population& one : c.grains) {
     if (one.held()) continue;
     if (any_wall(c)) fastest = std::max(fastest, one.velocity.norm());
@@ -70,7 +74,7 @@ double ratio_of_masses(const beds::Population& grains, double ratio) {
 }
 
 double speed_of_a_fall(const Case& c) {
-  if (has_fluid(c)) return settling_velocity(c);
+  if (has_fluid(c)) return falling_speed(c);
   const double height = std::max(0.0, c.domain.size.z() - settled_height(c));
   return periodic_axes(c.domain)[2] ? 0.0 : std::sqrt(2.0 * std::abs(gravity_vector(c.gravity).z()) * height);
 }
@@ -99,6 +103,24 @@ void add_overlaps(const Case& c, const beds::Population& grains, const dem::Cont
 }
 
 }  // namespace
+
+double speed_off_walls(const Case& c) {
+  double fastest = 0.0;
+  const auto consider = [&](const Vec3& velocity, const std::optional<dem::Oscillation>& oscillation,
+                            const Vec3& normal) {
+    const dem::PrescribedMotion motion{velocity, oscillation.value_or(dem::Oscillation{})};
+    fastest = std::max(fastest, 2.0 * motion.largest_speed_along(normal));
+  };
+  for (const beds::Population& body : c.grains)
+    for (const int axis : {0, 1, 2})
+      if (body.motion && !periodic_axes(c.domain)[static_cast<std::size_t>(axis)])
+        consider(body.motion->velocity, body.motion->oscillation, Vec3::Unit(axis));
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face)
+    if (const coupling::FaceKeys& keys = c.domain.faces[face]; keys.type == lbm::FaceType::moving)
+      consider(keys.velocity, keys.oscillation, Vec3::Unit(static_cast<Eigen::Index>(face / 2)));
+  for (const beds::WallKeys& wall : c.walls) consider(wall.velocity, wall.oscillation, wall.normal.normalized());
+  return fastest;
+}
 
 Overlaps expected_overlaps(const Case& c) {
   Overlaps found{0.0, 0.0, impact_speed(c)};
@@ -178,7 +200,8 @@ std::optional<DryRestitution> dry_restitution(const Case& c) {
 double stress_ratio_at_base(const Case& c) {
   const Vec3 gravity = gravity_vector(c.gravity);
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
-  if (c.grains.empty() || side_walls(c) > 0 || !periodic[0] || periodic[2] || gravity.x() == 0.0 || gravity.z() >= 0.0)
+  if (!has_free_grains(c) || side_walls(c) > 0 || !periodic[0] || periodic[2] || gravity.x() == 0.0 ||
+      gravity.z() >= 0.0)
     return 0.0;
   if (c.system == SystemKind::model_fluid || (has_fluid(c) && c.fluid.mean_velocity)) return 0.0;
   const ReferenceGrain grain = reference_grain(c);
@@ -189,6 +212,17 @@ double stress_ratio_at_base(const Case& c) {
   if (excess <= neutral_density * water) return 0.0;
   return (water * held_by_the_bed(c, depth) + (water + excess) * height) * std::abs(gravity.x()) /
          (excess * height * -gravity.z());
+}
+
+bool only_friction_holds_the_bed(const Case& c) {
+  if (c.contact.liquid_bridge) return false;
+  const auto free = free_populations(c);
+  return std::none_of(free.begin(), free.end(), [&](std::size_t p) {
+    const beds::Population& grains = c.grains[p];
+    const double rolling = grains.contact ? grains.contact->rolling_friction.value_or(c.contact.rolling_friction)
+                                          : c.contact.rolling_friction;
+    return has_clumps(grains) || rolling > 0.0;
+  });
 }
 
 double bulk_friction(const Case& c) {

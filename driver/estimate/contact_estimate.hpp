@@ -15,9 +15,16 @@ struct Overlaps {
   double under_weight;
   double in_impact;  // without damping, of two free grains (on a wall as hard as they are sqrt 2 more), or of one with
                      // a softer wall, at `speed`
-  double speed;      // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given
+  // m/s, of a fall, through the fluid or dry from the top of the box onto the bed, or as given: of grains, of what
+  // meets them, or off moving walls.
+  double speed;
 };
 Overlaps expected_overlaps(const Case& c);
+
+// m/s, of grains at rest that a face or a wall throws as it moves along its normal, or a body of grains as it moves
+// along an axis that is not periodic: after an elastic impact twice as fast as it. What moves in its own plane, or
+// turns, carries grains along. 0: none moves so.
+double speed_off_walls(const Case& c);
 
 // Overlaps, in diameters, from which they count as large.
 inline constexpr double deep_under_weight = 0.01, deep_in_impact = 0.05;
@@ -51,7 +58,8 @@ std::optional<DryRestitution> dry_restitution(const Case& c);
 // Shear stress over normal stress between the grains at the base of a settled bed, where gravity along x drives water
 // and grains: with the pores full of water and H of it above, as far as the bed holds it,
 //   [rho_f H + (rho_f + phi (rho_s - rho_f)) h] g_x / [phi (rho_s - rho_f) h g_z],
-// and dry g_x/g_z. 0 where nothing drives the bed, where side walls carry it, and for less than two layers.
+// and dry g_x/g_z. 0 where nothing drives the bed, where side walls carry it, for less than two layers, and without
+// grains that are free.
 double stress_ratio_at_base(const Case& c);
 
 // The ratio that spheres of this friction coefficient hold at most: 0.105 to 0.405, simulations of slow shear by
@@ -60,5 +68,8 @@ double bulk_friction(double friction);
 
 // That of the free grains, of the mean of their coefficients by volume.
 double bulk_friction(const Case& c);
+
+// False of clumps and of grains with rolling friction or liquid bridges, which hold more than bulk_friction.
+bool only_friction_holds_the_bed(const Case& c);
 
 }  // namespace thalweg::driver

@@ -290,6 +290,20 @@ double settling_velocity_of(const Case& c, const beds::Population& grains) {
                            c.fluid.kinematic_viscosity);
 }
 
+// m/s, of the same grain, which falls from rest, and no farther than from one face of the box to another: at most the
+// root of 2 g |1 - rho_f/rho_s| times that, without drag and added mass.
+double falling_speed_of(const Case& c, const beds::Population& grains) {
+  const double terminal = settling_velocity_of(c, grains);
+  const Vec3 gravity = gravity_vector(c.gravity);
+  double farthest = infinite;  // m
+  for (const int axis : {0, 1, 2})
+    if (!periodic_axes(c.domain)[static_cast<std::size_t>(axis)] && gravity[axis] != 0.0)
+      farthest = std::min(farthest, c.domain.size[axis] * gravity.norm() / std::abs(gravity[axis]));
+  if (!(terminal > 0.0) || !std::isfinite(farthest)) return terminal;
+  return std::min(terminal,
+                  std::sqrt(2.0 * gravity.norm() * std::abs(1.0 - c.fluid.density / grains.density) * farthest));
+}
+
 bool starts_from_a_bed(const Case& c, const beds::Population& grains) {
   return c.initial.takes(InitialField::grains) || grains.from_file();
 }
@@ -344,6 +358,14 @@ double settling_velocity(const Case& c) {
   return fastest;
 }
 
+double falling_speed(const Case& c) {
+  double fastest = 0.0;
+  if (!has_fluid(c)) return fastest;
+  for (const beds::Population& grains : c.grains)
+    if (!grains.held()) fastest = std::max(fastest, falling_speed_of(c, grains));
+  return fastest;
+}
+
 double given_speed(const Case& c, const beds::Population& grains) {
   if (grains.motion) return rigid_speed(c, grains);
   if (grains.fixed) return 0.0;
@@ -391,7 +413,7 @@ FlowEstimate flow_estimate(const Case& c) {
   for (const beds::Population& grains : c.grains) {
     consider(flow, given_speed(c, grains), FlowCause::moving_grains);
     if (!grains.held() && !starts_from_a_bed(c, grains))
-      consider(flow, settling_velocity_of(c, grains), FlowCause::settling);
+      consider(flow, falling_speed_of(c, grains), FlowCause::settling);
   }
   consider(flow, fastest_supply(c), FlowCause::moving_grains);
   for (const SolidCase& solid : c.solids) consider(flow, largest_speed(solid), FlowCause::moving_solids);

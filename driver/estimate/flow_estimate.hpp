@@ -90,4 +90,7 @@ double settling_velocity(double diameter, double density_ratio, double gravity, 
 // m/s, of the fastest single grain free to move in the fluid at rest; 0 without any.
 double settling_velocity(const Case& c);
 
+// m/s, the same where the box is too low for that: at most what a fall through it gives without drag.
+double falling_speed(const Case& c);
+
 }  // namespace thalweg::driver

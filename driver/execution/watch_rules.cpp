@@ -4,6 +4,7 @@
 #include "dem/laws/liquid_bridge.hpp"
 #include "dem/motion/grain_volume.hpp"
 #include "driver/case/solid_setup.hpp"
+#include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/supplied_grains.hpp"
@@ -89,9 +90,9 @@ double weight_over_section(const Case& c) {
   return least > 0.0 ? least : never;
 }
 
-// The largest speed of a population, a wall, a solid or a supply, by what the case says; m/s.
+// The largest speed of a population, a wall and what it throws, a solid or a supply, by what the case says; m/s.
 double largest_given_speed(const Case& c) {
-  double largest = 0.0;
+  double largest = speed_off_walls(c);
   for (const beds::Population& grains : c.grains)
     largest = std::max({largest, given_speed(c, grains), grains.figures.fastest});
   for (const coupling::FaceKeys& face : c.domain.faces)
@@ -240,9 +241,10 @@ void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
          return WatchLimits{std::min({suspicious_speed * speed, fast_lattice_velocity * unit, stop}), stop};
        },
        "the largest speed of a grain",
-       fmt::format("Neither the flow nor free fall explains this speed; the contacts or the fluid load of the grain "
-                   "must cause it: check overlaps at the start, or shorten {} or {}.",
-                   has_fluid(c) ? "fluid.time_step" : "run.time_step", change_of_contacts(c, Contacts::softer))});
+       fmt::format(
+           "Neither the flow, nor free fall, nor what the case itself moves explains this speed; the contacts or "
+           "the fluid load of the grain must cause it: check overlaps at the start, or shorten {} or {}.",
+           has_fluid(c) ? "fluid.time_step" : "run.time_step", change_of_contacts(c, Contacts::softer))});
   double allowed = 0.0;
   for (const beds::Population& grains : c.grains)
     if (grains.from_file())

@@ -159,9 +159,12 @@ void add_densities(const Case& c, Lines& lines) {
 void add_stress_at_base(const Case& c, Lines& lines) {
   if (const double ratio = stress_ratio_at_base(c); ratio > 0.0)
     lines.push_back(fmt::format(
-        "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; grains of this "
-        "friction sustain about {:.3g}",
-        ratio, bulk_friction(c)));
+        "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; {} sustain about "
+        "{:.3g}",
+        ratio,
+        only_friction_holds_the_bed(c) ? "grains of this friction"
+                                       : "these grains more than spheres without rolling friction and bridges, which",
+        bulk_friction(c)));
 }
 
 }  // namespace

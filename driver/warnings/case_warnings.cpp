@@ -208,8 +208,9 @@ double slope_with_ratio(const Case& c, double ratio) {
 
 Warnings sliding_bed(const Case& c) {
   if (c.system != SystemKind::grains && c.system != SystemKind::resolved) return {};
+  if (!only_friction_holds_the_bed(c)) return {};
   const double ratio = stress_ratio_at_base(c), held = bulk_friction(c);
-  if (ratio <= held) return {};
+  if (!(ratio > held)) return {};
   const double slope = slope_with_ratio(c, held);
   if (slope == 0.0)
     return {{fmt::format("The Shields number requires a shear stress of {:.2g} times the normal stress at the base of "
@@ -247,13 +248,28 @@ Warnings coarse_cells(const Case& c) {
 // Only grains that sink make a bed.
 Warnings floating_grains(const Case& c) {
   Warnings found;
+  const auto free = free_populations(c);
+  const bool there_is_a_bed =
+      std::any_of(free.begin(), free.end(), [&](std::size_t p) { return !floats(c, c.grains[p]); });
   if (gravity_vector(c.gravity).z() >= 0.0 || c.gravity.mode == GravityMode::balanced) return found;
   for (std::size_t n = 0; n < c.grains.size(); ++n)
     if (!c.grains[n].held() && floats(c, c.grains[n]))
       found.push_back(
-          fmt::format("Grains of {:g} kg/m^3 (grains.{}) are no heavier than the fluid of {:g} kg/m^3: they "
-                      "make no bed, and there is no Shields number.",
-                      c.grains[n].density, n, c.fluid.density));
+          fmt::format("Grains of {:g} kg/m^3 (grains.{}) are no heavier than the fluid of {:g} kg/m^3: they {}.",
+                      c.grains[n].density, n, c.fluid.density,
+                      there_is_a_bed ? "are no part of the bed, and have no Shields number"
+                                     : "make no bed, and there is no Shields number"));
+  return found;
+}
+
+Warnings late_supplies(const Case& c) {
+  Warnings found;
+  for (std::size_t n = 0; n < c.supplies.size(); ++n)
+    if (c.supplies[n].from >= c.run.until)
+      found.push_back(fmt::format(
+          "The supply supplies.{0} begins at {1:g} s, and the run ends at {2:g} s without any of its grains: "
+          "give an earlier supplies.{0}.from, or a later run.until.",
+          n, c.supplies[n].from, c.run.until));
   return found;
 }
 
@@ -339,6 +355,7 @@ std::vector<WarningRule> rules_for(const Case& c) {
                                  with_fluid<outlets>,
                                  with_fluid<floating_grains>,
                                  unlike_clumps,
+                                 late_supplies,
                                  sliding_bed,
                                  with_fluid<fast_flow>,
                                  with_fluid<compression>,

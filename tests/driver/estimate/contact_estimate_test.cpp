@@ -81,6 +81,8 @@ TEST(Overlaps, OfClumpsAreThoseOfAMemberUnderTheWholeLoad) {
                alike = expected_overlaps(spheres).under_weight;
   EXPECT_LT(narrower, 0.9);
   EXPECT_NEAR(expected_overlaps(clumps).under_weight, alike / narrower, 1e-6 * alike);
+  EXPECT_TRUE(only_friction_holds_the_bed(spheres));
+  EXPECT_FALSE(only_friction_holds_the_bed(clumps));
 }
 
 // Grains that are thrown at a wall or at held grains meet them as fast as they are thrown.
@@ -100,6 +102,34 @@ TEST(Overlaps, OfGrainsThatAreThrown) {
   c.grains.back().fixed = false;
   c.grains.back().prescribed_velocity = Vec3(-3.0, 0.0, 4.0);  // towards them
   EXPECT_NEAR(expected_overlaps(c).speed, 10.0, 1e-12);
+}
+
+// A wall throws a grain at rest at twice its speed along its normal, 2 A 2 pi f; one that slides in its own plane
+// throws none. A solid, or a body of grains, meets grains at rest as fast as it is.
+TEST(Overlaps, OfGrainsThatAreMet) {
+  Case c = bed();
+  c.system = SystemKind::grains;
+  const double falling = expected_overlaps(c).speed, swing = 2.0 * std::numbers::pi * 100.0 * 4e-3;
+  Case shaken = c, sheared = c, stirred = c, struck = c;
+  shaken.domain.faces[bottom].type = lbm::FaceType::moving;
+  shaken.domain.faces[bottom].oscillation = {Vec3(0.0, 0.0, 4e-3), 100.0};
+  EXPECT_NEAR(expected_overlaps(shaken).speed, 2.0 * swing, 1e-9);
+  sheared.walls.push_back(
+      {.point = Vec3(0.0, 0.0, 0.05), .normal = Vec3(0.0, 0.0, -2.0), .velocity = Vec3(9.0, 0.0, 0.0)});
+  EXPECT_EQ(speed_off_walls(sheared), 0.0);
+  EXPECT_EQ(expected_overlaps(sheared).speed, falling);
+  sheared.walls.front().velocity.z() = -2.0;
+  EXPECT_NEAR(expected_overlaps(sheared).speed, 4.0, 1e-12);
+  stirred.solids.emplace_back().sphere = SphereCase{Vec3(0.02, 0.005, 0.05), 0.004};
+  stirred.solids[0].motion.emplace().velocity = Vec3(3.0, 0.0, 0.0);
+  EXPECT_NEAR(expected_overlaps(stirred).speed, 3.0, 1e-12);
+  beds::Population& body = struck.grains.emplace_back(struck.grains.front());
+  body.motion.emplace();
+  const double onto_it = expected_overlaps(struck).speed;
+  body.motion->velocity.x() = 9.0;  // a plate that shears them
+  EXPECT_EQ(expected_overlaps(struck).speed, onto_it);
+  body.motion->velocity.z() = 3.0;
+  EXPECT_NEAR(expected_overlaps(struck).speed, 6.0, 1e-12);
 }
 
 }  // namespace

@@ -199,6 +199,23 @@ TEST(FlowEstimate, OfAMeanVelocityCountsTheWaterAboveTheBedAlone) {
   EXPECT_NEAR(flow.speed, flow.friction_velocity / 0.41 * logarithm, 1e-9);
 }
 
+// In air the terminal speed of glass beads is 20 m/s; a fall through the box, on a slope, gives sqrt(2 g H/cos).
+TEST(FlowEstimate, OfGrainsThatFallIsAtMostThatOfTheBox) {
+  Case c = wide_bed(0.0);
+  c.gravity.slope = 0.3;
+  c.domain.faces[x_low].type = c.domain.faces[x_high].type = lbm::FaceType::no_slip;
+  c.fluid.density = 1.2;
+  c.fluid.kinematic_viscosity = 1.5e-5;
+  const double height = c.domain.size.z() * std::sqrt(1.0 + 0.3 * 0.3);
+  const double fastest = std::sqrt(2.0 * 9.8 * (1.0 - 1.2 / 2550.0) * height);
+  EXPECT_GT(settling_velocity(c), 10.0);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::settling);
+  EXPECT_NEAR(flow_estimate(c).speed, fastest, 1e-9);
+  EXPECT_NEAR(expected_overlaps(c).speed, fastest, 1e-9);
+  for (const FaceIndex face : {x_low, x_high, bottom, top}) c.domain.faces[face].type = lbm::FaceType::periodic;
+  EXPECT_EQ(falling_speed(c), settling_velocity(c));
+}
+
 TEST(FlowEstimate, KnowsInletsStartsAndGrainsThatFall) {
   Case c = wide_bed(0.0);
   EXPECT_EQ(flow_estimate(c).cause, FlowCause::settling);
@@ -348,6 +365,28 @@ TEST(Warnings, OfGrainsThatStillFall) {
   EXPECT_TRUE(any_contains(warnings(c), "The highest grains fall"));
 }
 
+// Beside grains that make a bed, those that float have no Shields number; alone they leave none to the case.
+TEST(Warnings, OfGrainsThatFloat) {
+  Case c = wide_bed();
+  beds::Population light = c.grains.front();
+  light.density = 900.0;
+  c.grains.push_back(light);
+  EXPECT_TRUE(any_contains(warnings(c), "(grains.1) are no heavier than the fluid of 1000 kg/m^3: they are no part"));
+  EXPECT_FALSE(any_contains(warnings(c), "there is no Shields number"));
+  c.grains.erase(c.grains.begin());
+  EXPECT_TRUE(any_contains(warnings(c), "there is no Shields number"));
+}
+
+TEST(Warnings, OfSuppliesThatBeginTooLate) {
+  Case c = wide_bed();
+  beds::SupplyKeys& supply = c.supplies.emplace_back();
+  supply.rate = 10.0;
+  supply.from = 0.5 * c.run.until;
+  EXPECT_FALSE(any_contains(warnings(c), "supplies.0"));
+  supply.from = c.run.until;
+  EXPECT_TRUE(any_contains(warnings(c), "give an earlier supplies.0.from"));
+}
+
 // A column of grains under water, by hand: shear stress rho_f g_x H + (rho_f + 0.6 excess) g_x h.
 TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
   Case c = wide_bed();
@@ -367,6 +406,29 @@ TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
   EXPECT_EQ(bulk_friction(0.5), 0.382);
   EXPECT_NEAR(bulk_friction(0.2), 0.5 * (0.268 + 0.357), 1e-12);
   EXPECT_EQ(bulk_friction(50.0), 0.405);
+}
+
+// Chialvo, Sun and Sundaresan (2012) have spheres without rolling friction or cohesion; what is held does not slide.
+TEST(SlidingBed, IsNotThatOfGrainsWhichHoldMore) {
+  const auto warned = [](const Case& c) { return any_contains(warnings(c), "slides as a whole"); };
+  Case c = wide_bed();
+  c.gravity.slope = 0.3;
+  c.contact.friction = 0.5;
+  ASSERT_TRUE(warned(c));
+  Case held = c, rolling = c, own = c, wet = c;
+  held.grains.front().fixed = true;
+  EXPECT_FALSE(warned(held));
+  EXPECT_EQ(stress_ratio_at_base(held), 0.0);
+  rolling.contact.rolling_friction = 0.3;
+  EXPECT_FALSE(warned(rolling));
+  EXPECT_EQ(stress_ratio_at_base(rolling), stress_ratio_at_base(c));
+  own.grains.front().contact.emplace().rolling_friction = 0.3;
+  EXPECT_FALSE(warned(own));
+  own.contact.rolling_friction = 0.3;  // of walls and of no grain
+  own.grains.front().contact->rolling_friction = 0.0;
+  EXPECT_TRUE(warned(own));
+  wet.contact.liquid_bridge.emplace();
+  EXPECT_FALSE(only_friction_holds_the_bed(wet));
 }
 
 // The mean pressure gradient carries what a slope would drive.
