@@ -4,6 +4,7 @@
 #include "dem/motion/grain_volume.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -129,6 +130,24 @@ void take_sums(const Population& population, const std::vector<Body>& bodies, co
   });
 }
 
+// Mean and deviation of the heights, of which a thick bed far above the floor keeps the digits that matter.
+void take_heights(const Population& population, const Ranks& ranks, FileFigures& figures) {
+  struct Moments {
+    double volume = 0.0, first = 0.0, second = 0.0;  // m^3, m^4, m^5
+  };
+  const Moments moments = ranks.passed_on<Moments>({}, [&](Moments& sums) {
+    for (const BedGrain& row : population.file) {
+      const double volume = population.volume_of(2.0 * row.radius), height = row.position.z();
+      sums.volume += volume;
+      sums.first += volume * height;
+      sums.second += volume * height * height;
+    }
+  });
+  figures.mean_height = moments.first / moments.volume;
+  figures.height_deviation =
+      std::sqrt(std::max(0.0, moments.second / moments.volume - figures.mean_height * figures.mean_height));
+}
+
 }  // namespace
 
 void take_rows(Population& population, std::vector<BedGrain> rows, const PeriodicBox& box, const Ranks& ranks) {
@@ -139,6 +158,7 @@ void take_rows(Population& population, std::vector<BedGrain> rows, const Periodi
   figures.rows = ranks.range_of(static_cast<std::int64_t>(population.file.size())).count;
   if (figures.rows == 0) return;
   take_extremes(population, ranks, figures);
+  take_heights(population, ranks, figures);
   figures.sizes = sizes_of(bodies, ranks);
   const BodySums sums = sums_of(bodies, ranks);
   population.clumps = sums.clumps;

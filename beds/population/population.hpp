@@ -119,6 +119,8 @@ struct FileFigures {
   double largest_member = 0.0;     // m, radius
   double volume = 0.0;             // m^3, of all grains
   double fastest = 0.0;            // m/s
+  double mean_height = 0.0;        // m, of the rows by their volume
+  double height_deviation = 0.0;   // m, about it, of the centres
   std::vector<SizeCount> sizes;    // of the grains, as for the sums
   Sums sums;
   bool operator==(const FileFigures&) const = default;

@@ -27,6 +27,14 @@ double filled_height(double volume, const analysis::VolumeBelow& below) {
   return (static_cast<double>(k - 1) + (here > 0.0 ? left / here : 1.0)) * below.spacing;
 }
 
+// m^3, of obstacles below a height (m).
+double obstacles_below(const analysis::VolumeBelow& below, double height) {
+  return below.obstacle.back() - analysis::obstacles_above(below, height);
+}
+
+// Solid fraction of held grains: fewer stand apart, and others lie between them.
+constexpr double loosest_held_bed = 0.2;
+
 // How many of bed and top hold the flow.
 int surfaces(const Case& c) { return 1 + c.domain.faces[top].drags(); }
 
@@ -42,18 +50,37 @@ double volume_in_the_bed(const Case& c) {
   return volume;
 }
 
-double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBelow& solids) {
+// m^3, of the grains that sink.
+double volume_that_settles(const Case& c) {
+  double volume = 0.0;
+  for (const beds::Population& population : c.grains)
+    if (!population.held() && !floats(c, population)) volume += population.volume();
+  return volume;
+}
+
+// m, of the surface as the run measures it; 0 where it is looser than a bed.
+double surface_of(const analysis::VolumeBelow& below, double loosest) {
+  return bulk_solid_fraction(below) < loosest ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
+}
+
+double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBelow& solids,
+                      const std::vector<HeldLayer>& held) {
   const PeriodicBox box = grain_box(c);
   const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
-  std::vector<double> spheres = analysis::union_below(box, obstacles.spheres, layers);
+  const double spacing = box.size.z() / layers, area = box.size.x() * box.size.y();
+  const std::vector<double> spheres = analysis::union_below(box, obstacles.spheres, layers);
   std::vector<double> filled = solids ? solids(layers) : std::vector<double>(spheres.size(), 0.0);
-  const double grains = volume_in_the_bed(c) - obstacles.volume_of_grains;
-  analysis::VolumeBelow below{spheres, box.size.z() / layers, box.size.x() * box.size.y(), filled};
-  constexpr double rounding = 1e-9;
-  if (grains <= rounding * obstacles.volume_of_grains)
-    return bulk_solid_fraction(below) < loosest_bed ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
+  const double settles = volume_that_settles(c) / settled_fraction(c);  // m^3, with its pores
+  if (settles == 0.0 && held.empty()) return surface_of({spheres, spacing, area, filled}, loosest_bed);
   for (std::size_t k = 0; k < filled.size(); ++k) filled[k] += spheres[k];
-  return filled_height(grains / settled_fraction(c), below);
+  const std::vector<double> stays = held_below(c, held, layers);
+  const analysis::VolumeBelow below{stays, spacing, area, filled};
+  const double floor = held.empty() ? 0.0 : surface_of(below, loosest_held_bed);
+  if (settles == 0.0) return floor;
+  if (floor > 0.0)  // what settles lies on it
+    return filled_height(settles + area * floor - obstacles_below(below, floor), below);
+  for (std::size_t k = 0; k < filled.size(); ++k) filled[k] += stays[k] / settled_fraction(c);
+  return filled_height(settles, below);
 }
 
 }  // namespace
@@ -97,7 +124,8 @@ double settled_height(const Case& c) {
   if (c.grains.empty() || gravity_vector(c.gravity).z() == 0.0) return 0.0;
   const Obstacles obstacles = obstacles_of(c);
   const SolidsBelow solids = solids_below(c);
-  if (solids || !obstacles.spheres.empty()) return settled_height(c, obstacles, solids);
+  const std::vector<HeldLayer> held = periodic_axes(c.domain)[2] ? std::vector<HeldLayer>{} : held_layers(c);
+  if (solids || !obstacles.spheres.empty() || !held.empty()) return settled_height(c, obstacles, solids, held);
   const double width = c.disks ? c.disks->thickness : c.domain.size.y();
   return volume_in_the_bed(c) / (settled_fraction(c) * c.domain.size.x() * width);
 }
@@ -114,6 +142,13 @@ bool inlet_sets_flow(const Case& c, int axis) {
   const auto low = static_cast<std::size_t>(2 * axis);
   return c.domain.faces[low].type == lbm::FaceType::velocity_inlet ||
          c.domain.faces[low + 1].type == lbm::FaceType::velocity_inlet;
+}
+
+double largest_outlet_pressure(const Case& c) {
+  double largest = 0.0;
+  for (const coupling::FaceKeys& face : c.domain.faces)
+    if (face.type == lbm::FaceType::pressure_outlet) largest = std::max(largest, std::abs(face.pressure));
+  return largest;
 }
 
 int side_walls(const Case& c) { return c.domain.faces[y_low].drags() + c.domain.faces[y_high].drags(); }

@@ -22,7 +22,7 @@ bool floats(const Case& c, const beds::Population& grains);
 struct FlowNumbers {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double slope = unknown;              // tangent of the bed's angle
-  double bed_height = unknown;         // m: the grains settled at settled_fraction()
+  double bed_height = unknown;         // m: settled_height()
   double depth = unknown;              // m: from there to the top
   double hydraulic_radius = unknown;   // m: H W/(n H + W) beside n side walls
   int side_walls = 0;                  // n, 0 to 2
@@ -44,9 +44,9 @@ double slope_for(const FlowNumbers& flow, double shields);
 // between near walls 0.5).
 inline constexpr double loosest_bed = 0.4;
 
-// m, of the grains that sink, settled at settled_fraction() in the room that obstacles leave (obstacles.hpp); 0 without
-// gravity across the bed. Where there are only obstacles, their surface as the run measures it, or 0 where they make no
-// bed.
+// m, of the grains that sink, settled at settled_fraction() in the room that obstacles and scattered held grains leave
+// (obstacles.hpp), or on the surface of held grains that make a bed; 0 without gravity across the bed. Where no grain
+// sinks, the surface of what is held as the run measures it, or 0 where that makes no bed.
 double settled_height(const Case& c);
 
 // True if gravity along an axis (0: x, 1: y) drives a flow: between periodic or open faces. Walls balance it by
@@ -56,6 +56,9 @@ bool drives_flow(const Case& c, int axis);
 // True if a velocity_inlet at a face across an axis (0: x, 1: y) sets how much flows along it: pressure then balances
 // gravity along it, as between walls.
 bool inlet_sets_flow(const Case& c, int axis);
+
+// Pa, of any pressure_outlet, above or below the pressure at which the fluid starts; 0 without.
+double largest_outlet_pressure(const Case& c);
 
 // Number of side walls (faces across y) that exert drag, 0 to 2.
 int side_walls(const Case& c);

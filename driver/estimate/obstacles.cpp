@@ -2,6 +2,7 @@
 
 #include "beds/population_seeds.hpp"
 #include "core/geometry/mesh_volume.hpp"
+#include "core/geometry/periodic_box.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/solid_setup.hpp"
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -21,7 +23,7 @@ constexpr double as_long_again = 2.0;  // times the longest free grain
 
 // A sphere or clump.
 struct HeldGrain {
-  double volume, extent;                       // m^3, m
+  double volume, extent, height;               // m^3, m, m of its centre
   std::vector<analysis::SphereInBed> spheres;  // one, or its members
   bool stands = false;                         // is an obstacle
 };
@@ -35,6 +37,7 @@ std::vector<HeldGrain> held_grains(const beds::Population& population, const Per
   for (std::size_t n = 0; n < grains.size(); ++n) {
     grains[n].volume = population.volume_of(population.diameter_of(n));
     grains[n].extent = population.room_of(n);
+    grains[n].height = population.placement.positions[n].z();
   }
   for (const dem::GrainSeed& row : rows)
     grains[static_cast<std::size_t>(row.id) / members].spheres.push_back(
@@ -90,6 +93,39 @@ double longest_free_grain(const Case& c) {
   return longest;
 }
 
+// Those with positions; `stands` is set.
+std::vector<HeldGrain> held_with_positions(const Case& c) {
+  std::vector<HeldGrain> grains = all_held_grains(c);
+  mark_merged(grain_box(c), grains);
+  const double longest = longest_free_grain(c);
+  for (HeldGrain& grain : grains)
+    if (longest > 0.0 && grain.extent >= as_long_again * longest) grain.stands = true;
+  return grains;
+}
+
+// Of a held population without positions.
+HeldLayer layer_of(const Case& c, const beds::Population& population) {
+  const double diameter = population.diameter, volume = population.volume();
+  if (population.from_file()) {  // of a slab the variance is a twelfth of its thickness squared; of a sphere d^2/20
+    const double deviation = population.figures.height_deviation, middle = population.figures.mean_height;
+    const double half = std::sqrt(3.0 * (deviation * deviation + diameter * diameter / 20.0));
+    return {middle - half, middle + half, diameter, volume};
+  }
+  const beds::RegionKeys region = population.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+  return {region.lower.z(), region.upper.z(), diameter, volume};
+}
+
+// Adds the volume (m^3) of a sheet of spheres with their centres at this height (m).
+void add_sheet(double centre, double diameter, double volume, double spacing, std::vector<double>& below) {
+  const auto share = [&](double height) {  // of a sphere, below this height
+    const double part = std::clamp((height - centre) / diameter + 0.5, 0.0, 1.0);
+    return part * part * (3.0 - 2.0 * part);
+  };
+  const double under_the_floor = share(0.0);
+  for (std::size_t k = 0; k < below.size(); ++k)
+    below[k] += volume * (share(static_cast<double>(k) * spacing) - under_the_floor);
+}
+
 // volume_below(), which takes a twentieth of a second. Keeps the last answers: the estimates of a case ask for the same
 // ones a hundred times.
 std::vector<double> kept_volume_below(const std::vector<TriangleMesh>& surfaces, const PeriodicBox& box, int layers) {
@@ -116,15 +152,37 @@ std::vector<double> kept_volume_below(const std::vector<TriangleMesh>& surfaces,
 Obstacles obstacles_of(const Case& c) {
   Obstacles found;
   if (c.disks) return found;
-  std::vector<HeldGrain> grains = all_held_grains(c);
-  mark_merged(grain_box(c), grains);
-  const double longest = longest_free_grain(c);
-  for (const HeldGrain& grain : grains) {
-    if (!grain.stands && !(longest > 0.0 && grain.extent >= as_long_again * longest)) continue;
+  for (const HeldGrain& grain : held_with_positions(c)) {
+    if (!grain.stands) continue;
     found.volume_of_grains += grain.volume;
     found.spheres.insert(found.spheres.end(), grain.spheres.begin(), grain.spheres.end());
   }
   return found;
+}
+
+std::vector<HeldLayer> held_layers(const Case& c) {
+  std::vector<HeldLayer> found;
+  if (c.disks) return found;
+  for (const HeldGrain& grain : held_with_positions(c)) {
+    if (grain.stands) continue;
+    const double diameter = std::cbrt(6.0 / std::numbers::pi * grain.volume);
+    found.push_back({grain.height - 0.5 * diameter, grain.height + 0.5 * diameter, diameter, grain.volume});
+  }
+  for (const beds::Population& population : c.grains)
+    if (population.held() && population.placement.positions.empty()) found.push_back(layer_of(c, population));
+  return found;
+}
+
+std::vector<double> held_below(const Case& c, const std::vector<HeldLayer>& held, int layers) {
+  std::vector<double> below(static_cast<std::size_t>(layers) + 1, 0.0);
+  const double spacing = c.domain.size.z() / layers;
+  for (const HeldLayer& layer : held) {
+    const double height = layer.upper - layer.lower;
+    const int sheets = std::max(1, static_cast<int>(height / layer.diameter * (1.0 + whole_number_tolerance)));
+    for (int n = 0; n < sheets; ++n)
+      add_sheet(layer.lower + (n + 0.5) / sheets * height, layer.diameter, layer.volume / sheets, spacing, below);
+  }
+  return below;
 }
 
 SolidsBelow solids_below(const Case& c) {

@@ -22,6 +22,21 @@ struct Obstacles {
 };
 Obstacles obstacles_of(const Case& c);
 
+// Held grains of the bed that lie between two heights, a clump as the sphere of its volume.
+struct HeldLayer {
+  double lower, upper;  // m
+  double diameter;      // m
+  double volume;        // m^3, of all of them
+};
+
+// The held grains that are no obstacles, at the start: each that has a position, and the others as their populations
+// are spread over a region or, from a file, over the heights that have the same mean and deviation. Without disks.
+std::vector<HeldLayer> held_layers(const Case& c);
+
+// Their volume (m^3) below layers + 1 heights from the floor of the box to its top: of each layer that of as many
+// sheets of spheres as it is diameters high, at least one.
+std::vector<double> held_below(const Case& c, const std::vector<HeldLayer>& held, int layers);
+
 // Volume (m^3) of the solids that stand still below layers + 1 heights from the floor of the box to its top, as
 // analysis::BedObstacles has it; places where several overlap count once. Empty: there are none.
 using SolidsBelow = std::function<std::vector<double>(int layers)>;

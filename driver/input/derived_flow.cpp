@@ -58,10 +58,15 @@ FlowFilledIn question_of(const io::YamlDocument& document) {
 void refuse_circles(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const std::string key = fmt::format("grains.{}.solid_fraction", n);
-    if (document.find(key) && !c.grains[n].placement.region)
+    const beds::PlacementKeys& placement = c.grains[n].placement;
+    if (document.find(key) && !placement.region)
       throw document.error(key,
                            "the height of the box follows from the grains and cannot give their number; give count, "
                            "fill, or placement.region");
+    if (c.grains[n].held() && !placement.region && placement.positions.empty() && !placement.file)
+      throw document.error(fmt::format("grains.{}.placement", n),
+                           "these grains stay where they are put, all over the height of the box, which follows from "
+                           "them; give placement.region");
   }
 }
 

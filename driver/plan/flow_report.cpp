@@ -101,12 +101,17 @@ double placed_share(const Case& c) {
   return std::min(1.0, area / (c.domain.size.x() * c.domain.size.y()));
 }
 
-// Empty where the grains make no bed of at least their diameter.
+// Empty where the grains make no bed of at least their diameter, or half of it where some are held.
 std::string bed_text(const Case& c) {
   if (c.grains.empty() || c.disks || periodic_axes(c.domain)[2] || gravity_vector(c.gravity).z() >= 0.0) return {};
   if (has_fluid(c) && !std::isfinite(flow_numbers(c).depth)) return {};
   const double height = settled_height(c), diameter = reference_grain(c).diameter;
-  if (height < diameter) return {};
+  const bool any_held =
+      std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return grains.held(); });
+  if (height < (any_held ? 0.5 : 1.0) * diameter) return {};
+  if (!has_free_grains(c))
+    return fmt::format("bed        reaches up to about {:.3g} m ({:.3g} diameters), where its grains are held", height,
+                       height / diameter);
   const double placed = placed_share(c);
   return fmt::format("bed        settles at about {:.3g} m ({:.3g} diameters, solid fraction {:.3g}){}", height,
                      height / diameter, settled_fraction(c),

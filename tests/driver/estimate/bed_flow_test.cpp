@@ -87,6 +87,50 @@ TEST(FlowNumbers, LeaveOutWhatFloats) {
   EXPECT_FALSE(std::isfinite(flow_numbers(c).shields_depth));
 }
 
+// Grains that are held in a region reach up to its top, whatever their solid fraction; those that settle on them make
+// the bed higher by their own height.
+TEST(FlowNumbers, KnowThatHeldGrainsStayWhereTheyAre) {
+  constexpr double d = 5e-3;
+  Case c = water_over_glass(d, 0.016, 0.06, 0.040, lbm::FaceType::periodic);
+  const double settled = settled_height(c), area = c.domain.size.x() * c.domain.size.y();
+  const auto region = [&](double height) {
+    return beds::RegionKeys{Vec3::Zero(), Vec3(c.domain.size.x(), c.domain.size.y(), height)};
+  };
+  Case held = c;
+  held.grains[0].fixed = true;
+  held.grains[0].placement.region = region(1.5 * settled);
+  EXPECT_NEAR(settled_height(held), 1.5 * settled, 0.2 * d);
+  EXPECT_NEAR(flow_numbers(held).depth, held.domain.size.z() - settled_height(held), 1e-12);
+
+  Case layer = c;  // one of 24 x 8 beneath the bed: its surface is where half of it is above, 0.89 d
+  layer.grains.push_back(c.grains[0]);
+  layer.grains[1].count = 24 * 8;
+  layer.grains[1].fixed = true;
+  layer.grains[1].placement.region = region(d);
+  EXPECT_NEAR(settled_height(layer) - settled, 0.89 * d, 0.02 * d);
+
+  Case apart = layer;  // too few to bear a bed, which they thicken
+  apart.grains[1].count = 24;
+  const double volume = (1000.0 + 24.0) * std::numbers::pi / 6.0 * d * d * d;
+  EXPECT_NEAR(settled_height(apart), volume / (0.6 * area), 1e-9);
+  apart.grains.erase(apart.grains.begin());
+  EXPECT_EQ(settled_height(apart), 0.0);
+}
+
+// A bed file has no region: its grains have the heights of a slab with the same mean and deviation.
+TEST(FlowNumbers, KnowHowHighHeldGrainsOfAFileReach) {
+  constexpr double d = 5e-3, height = 0.03;
+  Case c = water_over_glass(d, 0.016, 0.06, 0.040, lbm::FaceType::periodic);
+  beds::Population& grains = c.grains[0];
+  grains.fixed = true;
+  grains.figures.rows = grains.count = 1000;
+  grains.figures.volume = 1000.0 * std::numbers::pi / 6.0 * d * d * d;
+  grains.figures.sizes = {{d, 1000}};
+  grains.figures.mean_height = 0.5 * height;
+  grains.figures.height_deviation = std::sqrt((height * height - 0.6 * d * d) / 12.0);  // less that of a sphere
+  EXPECT_NEAR(settled_height(c), height, 0.2 * d);
+}
+
 // Disks lie in one layer, as wide as they are thick: 60 of 4 mm on 60 mm, 0.8 of whose plane they cover.
 TEST(FlowNumbers, KnowHowHighDisksSettle) {
   Case c = water_over_glass(4e-3, 0.0, 0.05, 0.009, lbm::FaceType::periodic);
