@@ -78,6 +78,9 @@ double suitable_time_step(const Case& c) {
     longest = std::min(
         longest,
         spacing * std::sqrt(largest_compression / (3.0 * std::abs(gravity_vector(c.gravity).z()) * c.domain.size[2])));
+  const double pressure = largest_outlet_pressure(c);
+  if (pressure > 0.0)
+    longest = std::min(longest, spacing * std::sqrt(largest_compression * c.fluid.density / (3.0 * pressure)));
   return std::stod(at_most_text(longest, 2));
 }
 

@@ -47,10 +47,14 @@ struct Channel {
 Channel channel_of(const Case& c) {
   const double width = c.domain.size.y();
   const int walls = side_walls(c);
-  const bool floor = c.domain.faces[bottom].drags() || (settled_height(c) > 0.0 && !periodic_axes(c.domain)[2]);
+  const double bed = settled_height(c);
+  const bool floor = c.domain.faces[bottom].drags() || (bed > 0.0 && !periodic_axes(c.domain)[2]);
   const int surfaces = floor + c.domain.faces[top].drags();
   Channel channel{};
-  channel.depth = c.domain.size.z() - settled_height(c);
+  channel.depth = c.domain.size.z() - bed;
+  // Where held grains fill the box, the water between them flows: as deep as it would be alone.
+  if (!c.grains.empty() && !has_free_grains(c) && channel.depth < largest_size(c))
+    channel.depth = c.domain.size.z() - solid_volume(c) / (c.domain.size.x() * width);
   channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
   channel.half_width = walls == 0 ? infinite : width / walls;
   channel.roughness = largest_size(c) / roughness_a_diameter;
@@ -136,19 +140,49 @@ TurbulentFlow turbulent_flow(const Case& c, const Channel& channel, double along
 }
 
 // m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, an inlet sets how
-// much flows whatever the slope, and balanced gravity drives nothing.
+// much flows whatever the slope, as does a mean velocity along x, and balanced gravity drives nothing.
 Vec3 driving_gravity(const Case& c) {
   Vec3 driving = Vec3::Zero();
   if (c.gravity.mode == GravityMode::balanced) return driving;
   const Vec3 gravity = gravity_vector(c.gravity);
   for (const int axis : {0, 1})
     if (drives_flow(c, axis) && !inlet_sets_flow(c, axis)) driving[axis] = gravity[axis];
+  if (c.fluid.mean_velocity) driving.x() = 0.0;
   return driving;
 }
 
+bool has_outlets(const Case& c, int axis) {
+  const auto low = static_cast<std::size_t>(2 * axis);
+  return c.domain.faces[low].type == lbm::FaceType::pressure_outlet &&
+         c.domain.faces[low + 1].type == lbm::FaceType::pressure_outlet;
+}
+
+// m/s^2, of different pressures of two outlets opposite each other.
+Vec3 driving_pressure(const Case& c) {
+  Vec3 driving = Vec3::Zero();
+  for (const int axis : {0, 1}) {
+    const auto low = static_cast<std::size_t>(2 * axis);
+    if (has_outlets(c, axis))
+      driving[axis] =
+          (c.domain.faces[low].pressure - c.domain.faces[low + 1].pressure) / (c.fluid.density * c.domain.size[axis]);
+  }
+  return driving;
+}
+
+Vec3 driving_acceleration(const Case& c) { return driving_gravity(c) + driving_pressure(c); }
+
 double acceleration_along(const Case& c) {
-  const Vec3 driving = driving_gravity(c);
+  const Vec3 driving = driving_acceleration(c);
   return std::hypot(driving.x(), driving.y());
+}
+
+// m/s, that fluid gains which enters at an outlet from rest (Bernoulli); infinite where it passes a periodic face.
+double speed_through_outlets(const Case& c) {
+  const Vec3 driving = driving_acceleration(c);
+  double head = 0.0;  // m^2/s^2
+  for (const int axis : {0, 1})
+    if (driving[axis] != 0.0) head += has_outlets(c, axis) ? std::abs(driving[axis]) * c.domain.size[axis] : infinite;
+  return std::sqrt(2.0 * head);
 }
 
 struct SlopeFlow {
@@ -157,7 +191,7 @@ struct SlopeFlow {
   double spin_up;  // s
 };
 
-SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
+SlopeFlow flow_in_long_channel(const Case& c, const Channel& channel, double along) {
   const LaminarChannel slow = channel.laminar(along);
   const double friction_velocity = std::sqrt(along * channel.radius);
   if (slow.mean * channel.radius / channel.viscosity < channel_transition)
@@ -166,12 +200,28 @@ SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
   return {fast.largest, fast.mean, friction_velocity, false, 2.0 * fast.mean / along};
 }
 
+// Between two outlets friction takes only what the head of the entering fluid leaves.
+SlopeFlow developed_flow(const Case& c, const Channel& channel, double along) {
+  SlopeFlow flow = flow_in_long_channel(c, channel, along);
+  const double limit = speed_through_outlets(c), share = limit / flow.speed;
+  if (share >= 1.0) return flow;
+  flow.speed = limit;
+  flow.bulk_velocity *= share;
+  flow.friction_velocity *= flow.laminar ? std::sqrt(share) : share;
+  flow.spin_up = 2.0 * flow.bulk_velocity / along;
+  return flow;
+}
+
+FlowCause cause_along(const Case& c) {
+  return driving_pressure(c).norm() > driving_gravity(c).norm() ? FlowCause::outlets : FlowCause::slope;
+}
+
 FlowEstimate flow_of_slope(const Case& c, const Channel& channel) {
   FlowEstimate flow;
   const double along = acceleration_along(c);
-  if (c.fluid.mean_velocity || along == 0.0) return flow;
+  if (along == 0.0) return flow;
   const SlopeFlow developed = developed_flow(c, channel, along);
-  flow.cause = flow.drive = FlowCause::slope;
+  flow.cause = flow.drive = cause_along(c);
   flow.speed = developed.speed;
   flow.bulk_velocity = developed.bulk_velocity;
   flow.friction_velocity = developed.friction_velocity;
@@ -252,7 +302,7 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
 double way_of(const Case& c, FlowCause drive) {
   const auto sign = [](double velocity) { return velocity < 0.0 ? -1.0 : 1.0; };
   const auto cosine = [](const Vec3& along) { return along.x() / std::hypot(along.x(), along.y()); };
-  if (drive == FlowCause::slope) return cosine(driving_gravity(c));
+  if (drive == FlowCause::slope || drive == FlowCause::outlets) return cosine(driving_acceleration(c));
   if (drive == FlowCause::mean_velocity) return sign(c.fluid.mean_velocity->velocity);
   if (drive == FlowCause::moving_face) return cosine(c.domain.faces[top].velocity);
   return drive == FlowCause::inlet ? sign(inlet_of(c)->velocity.x()) : 1.0;
@@ -316,6 +366,8 @@ const char* words_of(FlowCause cause) {
       return "nothing moves it";
     case FlowCause::slope:
       return "slope and depth";
+    case FlowCause::outlets:
+      return "the pressures of the outlets";
     case FlowCause::mean_velocity:
       return "the mean velocity over the bed";
     case FlowCause::moving_face:
@@ -406,7 +458,7 @@ FlowEstimate flow_estimate(const Case& c) {
   } else if (c.fluid.mean_velocity) {
     consider(flow, std::abs(c.fluid.mean_velocity->velocity), FlowCause::mean_velocity);
   } else {
-    consider(flow, estimated_velocity(c), FlowCause::slope);
+    consider(flow, estimated_velocity(c), cause_along(c));
   }
   consider_faces(c, channel, flow);
   consider_start(c, flow);

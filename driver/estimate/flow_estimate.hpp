@@ -9,6 +9,8 @@
 //                   turbulent: u_max = (u_b/kappa) ln(h/z_0) with u_b^2 = g_x h, U = u_max - u_b/kappa; between two
 //                   side walls at most that of their law, with u_tau for u_b;
 //                   at most the start + g_x times the time of the run; u_tau^2 = g_x R
+//   outlets         of different pressures, the same with (p_low - p_high)/(rho L) added to g_x; at most sqrt(2 g_x L),
+//                   as the water that enters comes from rest
 //   mean velocity   the water above the bed carries it all: U = mean velocity times water/(A H);
 //                   laminar: u_tau and u_max of the same channel
 //                   turbulent: U = (u_tau/kappa) [ln(h/z_0) - 1], u_max = U + u_tau/kappa
@@ -17,7 +19,7 @@
 //                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
 //
 // z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor. Gravity drives no flow
-// across walls, and none along an axis where an inlet sets how much flows.
+// across walls, and none along an axis where an inlet or a mean velocity sets how much flows.
 //
 // Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
 // U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, that of the channel, and
@@ -41,6 +43,7 @@ constexpr double smooth_roughness(double viscosity, double friction_velocity) {
 enum class FlowCause {
   none,
   slope,
+  outlets,
   mean_velocity,
   moving_face,
   inlet,
@@ -60,8 +63,8 @@ struct FlowEstimate {
   double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
   FlowCause cause = FlowCause::none;  // of that speed
 
-  // Flow along the bed or a bare floor: of the drives slope, mean velocity, moving top and inlet, the one with the
-  // largest friction velocity. Undefined without one.
+  // Flow along the bed or a bare floor: of the drives slope (or outlets), mean velocity, moving top and inlet, the one
+  // with the largest friction velocity. Undefined without one.
   FlowCause drive = FlowCause::none;
   double way = 1.0;                // along x: 1, -1 to the left; of an oblique flow the cosine, 0 across
   double depth = 0.0;              // m
@@ -79,8 +82,8 @@ FlowEstimate flow_estimate(const Case& c);
 // motion anywhere in their region or the box.
 double given_speed(const Case& c, const beds::Population& grains);
 
-// The speed (m/s) that a flow driven by gravity along the bed can reach, whatever the time of the run. An upper
-// estimate, for warnings. 0 without a fluid or a slope.
+// The speed (m/s) that a flow driven along the bed by gravity or outlets can reach, whatever the time of the run. An
+// upper estimate, for warnings. 0 without a fluid or such a drive.
 double estimated_velocity(const Case& c);
 
 // m/s, of one sphere in fluid at rest: weight less buoyancy against the drag of Schiller and Naumann (1933), with a
