@@ -1,5 +1,6 @@
 #include "driver/estimate/flow_estimate.hpp"
 
+#include "beds/packing/packing.hpp"
 #include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
@@ -44,6 +45,12 @@ struct Channel {
   bool is_held() const { return std::isfinite(reach) || std::isfinite(half_width); }
 };
 
+// True where held grains leave no room above them.
+bool held_grains_fill(const Case& c) {
+  if (c.grains.empty() || has_free_grains(c)) return false;
+  return periodic_axes(c.domain)[2] || c.domain.size.z() - settled_height(c) < largest_size(c);
+}
+
 Channel channel_of(const Case& c) {
   const double width = c.domain.size.y();
   const int walls = side_walls(c);
@@ -52,8 +59,8 @@ Channel channel_of(const Case& c) {
   const int surfaces = floor + c.domain.faces[top].drags();
   Channel channel{};
   channel.depth = c.domain.size.z() - bed;
-  // Where held grains fill the box, the water between them flows: as deep as it would be alone.
-  if (!c.grains.empty() && !has_free_grains(c) && channel.depth < largest_size(c))
+  // Between floor and top the water among them flows, as deep as it would be alone.
+  if (held_grains_fill(c) && !periodic_axes(c.domain)[2])
     channel.depth = c.domain.size.z() - solid_volume(c) / (c.domain.size.x() * width);
   channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
   channel.half_width = walls == 0 ? infinite : width / walls;
@@ -321,6 +328,39 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
   }
 }
 
+// The narrowest section between spheres of this solid fraction, on a cubic lattice, over the whole section.
+double narrowest_section(double solid_fraction) {
+  constexpr double apart = 0.2;  // single grains make no pores
+  if (solid_fraction < apart) return 1.0;
+  const double fraction = std::min(solid_fraction, beds::densest_bed);
+  return 1.0 - std::numbers::pi / 4.0 * std::pow(6.0 * fraction / std::numbers::pi, 2.0 / 3.0);
+}
+
+// Solid fraction of the densest bed that fluid which enters at bottom or top has to pass.
+double densest_bed_of(const Case& c) {
+  double fraction = 0.0;
+  for (const beds::Population& grains : c.grains) {
+    const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+    if (grains.held()) fraction = std::max(fraction, grains.volume() / (room.upper - room.lower).prod());
+  }
+  return settled_height(c) > 0.0 && has_free_grains(c) ? std::max(fraction, settled_fraction(c)) : fraction;
+}
+
+// What a mean velocity or an inlet drives through the pores of a bed.
+void consider_pores(const Case& c, FlowEstimate& flow) {
+  const bool filled = held_grains_fill(c);
+  const double fraction = filled ? solid_volume(c) / c.domain.size.prod() : 0.0;
+  if (filled && c.fluid.mean_velocity)  // the mean over the water
+    consider(flow, std::abs(c.fluid.mean_velocity->velocity) * (1.0 - fraction) / narrowest_section(fraction),
+             FlowCause::mean_velocity);
+  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
+    const coupling::FaceKeys& keys = c.domain.faces[face];
+    if (keys.type != lbm::FaceType::velocity_inlet) continue;
+    const double passed = face < bottom ? fraction : densest_bed_of(c);
+    consider(flow, std::abs(keys.velocity[static_cast<int>(face / 2)]) / narrowest_section(passed), FlowCause::inlet);
+  }
+}
+
 // m/s, the largest that a grain of a rigid population can have anywhere in its region or the box.
 double rigid_speed(const Case& c, const beds::Population& grains) {
   const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
@@ -461,6 +501,7 @@ FlowEstimate flow_estimate(const Case& c) {
     consider(flow, estimated_velocity(c), cause_along(c));
   }
   consider_faces(c, channel, flow);
+  consider_pores(c, flow);
   consider_start(c, flow);
   for (const beds::Population& grains : c.grains) {
     consider(flow, given_speed(c, grains), FlowCause::moving_grains);

@@ -18,6 +18,10 @@
 //   moving top      u_max = V, U = V/2; laminar (V H/nu < 1440): u_tau^2 = nu V/H
 //                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
 //
+// Through the pores of held grains that fill the box, and of a bed above or below an inlet at bottom or top, at least
+// the speed in the narrowest section between spheres of the same solid fraction phi on a cubic lattice, 1 - pi/4 (6
+// phi/pi)^(2/3) of the whole.
+//
 // z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor. Gravity drives no flow
 // across walls, and none along an axis where an inlet or a mean velocity sets how much flows.
 //

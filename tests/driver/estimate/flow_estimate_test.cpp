@@ -227,7 +227,7 @@ TEST(FlowEstimate, KnowsInletsStartsAndGrainsThatFall) {
   Case c = wide_bed(0.0);
   EXPECT_EQ(flow_estimate(c).cause, FlowCause::settling);
   EXPECT_NEAR(flow_estimate(c).speed, settling_velocity(d, 2.55, 9.8, 1e-6), 1e-12);
-  c.grains[0].fixed = true;
+  hold_bed(c);
   EXPECT_EQ(flow_estimate(c).speed, 0.0);
   c.initial.fluid.uniform = Vec3(0.1, 0.0, 0.0);
   EXPECT_EQ(flow_estimate(c).cause, FlowCause::initial_fluid);
@@ -328,6 +328,26 @@ TEST(FlowEstimate, OfAMeanVelocityInABoxFullOfHeldGrainsIsThatOfTheWater) {
   c.domain.size.z() -= depth;
   c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.2, .response_time = 0.5};
   EXPECT_NEAR(flow_estimate(c).bulk_velocity, 0.2, 1e-12);
+}
+
+// 8 spheres on a cubic lattice 1.25 diameters wide: between their equators the water is (1 - phi)/(1 - pi/4 0.8^2)
+// times as fast as in the mean, and 1/(1 - pi/4 0.8^2) times as fast as where it enters.
+TEST(FlowEstimate, ThroughPoresIsThatOfTheNarrowestSection) {
+  constexpr double pi = std::numbers::pi, side = 0.0125, narrowest = 1.0 - pi / 4.0 * 0.64;
+  constexpr double fraction = pi / 6.0 * 0.512;  // spheres of 5 mm, 6.25 mm apart
+  Case c = wide_bed(0.0);
+  c.gravity.magnitude = 0.0;
+  c.grains[0].count = 8;
+  c.grains[0].fixed = true;
+  c.domain.size = Vec3(side, side, side);
+  for (coupling::FaceKeys& face : c.domain.faces) face.type = lbm::FaceType::periodic;
+  c.fluid.mean_velocity = coupling::FlowTargetKeys{.velocity = 0.1, .response_time = 0.5};
+  EXPECT_NEAR(flow_estimate(c).speed, 0.1 * (1.0 - fraction) / narrowest, 1e-12);
+  c.fluid.mean_velocity.reset();
+  c.domain.faces[bottom] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.0, 0.0, 0.1)};
+  c.domain.faces[top].type = lbm::FaceType::pressure_outlet;
+  EXPECT_NEAR(flow_estimate(c).speed, 0.1 / narrowest, 1e-12);
+  EXPECT_EQ(flow_estimate(c).cause, FlowCause::inlet);
 }
 
 // A mean velocity replaces gravity along x and leaves that across.
