@@ -88,8 +88,9 @@ template <typename Real>
 void Bodies<Real>::begin_step(const StepMeasurements& measured) {
   totals_ = {};
   measured_ = measured;
-  by_height_ =
-      measured.momentum_by_height ? MomentumByHeight(solids(), fluid_.indexing().size()[2]) : MomentumByHeight();
+  by_height_ = measured.momentum_by_height
+                   ? MomentumByHeight(solids(), fluid_.indexing().size()[2], !options_.obstacles.empty())
+                   : MomentumByHeight();
   map_.begin_update();
   for (LinkBody& body : bodies_) body.clear_sums();
   if (has_moments()) moments_.assign(bodies_.size(), {});
@@ -100,7 +101,9 @@ BodySlot Bodies<Real>::add(GlobalId id, double radius, GlobalId clump, const Vec
   const BodySlot slot = map_.add(id, radius, clump);
   remap(slot, centre);
   resize_to_slots();
-  bodies_[index_of(slot)].radius = radius;
+  LinkBody& body = bodies_[index_of(slot)];
+  body.radius = radius;
+  body.is_obstacle = std::binary_search(options_.obstacles.begin(), options_.obstacles.end(), id);
   return slot;
 }
 
@@ -264,7 +267,7 @@ void Bodies<Real>::keep_momentum(LinkBody& body, int plane, const Vec3& position
   const Vec3 kept = momentum - 0.5 * fluid_.carried_force() - density * wall, torque = arm.cross(kept);
   body.force += FixedVec3::from(kept);
   const std::ptrdiff_t slot = &body - bodies_.data();
-  if (measured_.momentum_by_height) by_height_.at(slot, 2 * plane + 1) += FixedVec3::from(kept);
+  if (measured_.momentum_by_height) by_height_.add(slot, body.is_obstacle, 2 * plane + 1, FixedVec3::from(kept));
   body.torque += FixedVec3::from(torque);
   if (has_moments() && slot >= solids()) moments_[static_cast<std::size_t>(slot)].add(kept, arm);
   totals_.kept += kept;

@@ -6,7 +6,6 @@
 #include "core/parallel/ranks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -38,7 +37,7 @@ BedLayers::BedLayers(MPI_Comm communicator, const PeriodicBox& box, double windo
 
 BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
   std::vector<double> grains = grains_below(snapshot), obstacles = spheres_below(snapshot);
-  if (are_the_bed(snapshot)) grains = std::exchange(obstacles, {});
+  if (obstacles_are_the_bed(snapshot)) grains = std::exchange(obstacles, {});
   if (obstacles.empty())
     obstacles = solids_below_;
   else
@@ -48,18 +47,8 @@ BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
   return {height, bulk_solid_fraction(below), obstacles_above(below, height)};
 }
 
-bool BedLayers::are_the_bed(const Snapshot& snapshot) const {
+bool BedLayers::obstacles_are_the_bed(const Snapshot& snapshot) const {
   return !obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count;
-}
-
-double BedLayers::force_on_obstacles(const Snapshot& snapshot, const Bed& bed) const {
-  if (obstacles_.empty() || are_the_bed(snapshot)) return 0.0;
-  const GrainView& grains = snapshot.grains;
-  return reproducible_sums_by_bin(communicator_, 1, 1, [&](const TermTaker& take) {
-    for (std::size_t i = 0; i < grains.id.size(); ++i)
-      if (is_obstacle(grains.id[i]) && grains.position[i].z() > bed.height)
-        take(0, std::array{grains.fluid_force[i].x()});
-  })[0];
 }
 
 std::vector<char> BedLayers::floating(const Snapshot& snapshot) const {

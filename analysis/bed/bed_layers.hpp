@@ -30,13 +30,10 @@ public:
   double width() const { return width_; }   // m, of the bed
   // Of each grain here, whether it floats over a bed of others; empty where there is no such grain. Collective.
   std::vector<char> floating(const Snapshot& snapshot) const;
-  // N, along x, of the fluid on the spheres that are obstacles and have their centres above the bed; 0 where they are
-  // the bed. The same bits on any ranks; collective.
-  double force_on_obstacles(const Snapshot& snapshot, const Bed& bed) const;
+  bool obstacles_are_the_bed(const Snapshot& snapshot) const;  // spheres that are obstacles are all the grains
 
 private:
   bool is_obstacle(GlobalId id) const;
-  bool are_the_bed(const Snapshot& snapshot) const;
   std::vector<double> grains_below(const Snapshot& snapshot) const;
   void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
                     const std::vector<char>& floating, const TermTaker& take) const;

@@ -57,7 +57,7 @@ BedSurface::BedSurface(MPI_Comm communicator, const PeriodicBox& box, const BedS
 void BedSurface::observe(const Snapshot& snapshot) {
   // A restarted run measures the state of its checkpoint once more.
   const bool again = snapshot.step <= seen_step_;
-  measure(snapshot, again);
+  measure(snapshot);
   if (again) return;
   seen_step_ = snapshot.step;
   if (pixels_.look(snapshot, layers_.floating(snapshot)) && counts_from(keys_.from, pixels_.begun())) {
@@ -67,7 +67,7 @@ void BedSurface::observe(const Snapshot& snapshot) {
       surface_counts_[c] += StaticPixels::is_static(pixels_.surface()[c]) ? 1.0 : 0.0;
     }
   }
-  if (!counts_from(keys_.from, snapshot.time)) return;
+  if (!counts_from(keys_.from, snapshot.time) || lacks_momentum(snapshot)) return;
   ++measurements_;
   std::size_t n = 0;
   for (const Diagnostic& diagnostic : diagnostics())
@@ -75,10 +75,20 @@ void BedSurface::observe(const Snapshot& snapshot) {
   sums_[n] += bulk_;
 }
 
-// From the half planes of cells above the bed.
-double BedSurface::taken_by_solids(const Snapshot& snapshot, const FluidSource::Drive& drive) const {
-  if (!flow_->has_solids || snapshot.momentum == nullptr) return drive.on_solids.x();
-  const std::vector<Vec3>& by_height = snapshot.momentum->on_solids;
+// A state that was loaded has not recorded it; at the start nothing has been given to a body yet.
+bool BedSurface::lacks_momentum(const Snapshot& snapshot) const {
+  return needs_momentum() && snapshot.momentum == nullptr && snapshot.step > 0;
+}
+
+double BedSurface::taken_by_obstacles(const Snapshot& snapshot, const FluidSource::Drive& drive) const {
+  if (!flow_->has_obstacles || snapshot.momentum == nullptr) return drive.on_solids.x();
+  const MomentumBudget& momentum = *snapshot.momentum;
+  return above_bed(momentum.on_solids) +
+         (layers_.obstacles_are_the_bed(snapshot) ? 0.0 : above_bed(momentum.on_obstacles));
+}
+
+// Along x, of the half planes of cells above the bed.
+double BedSurface::above_bed(const std::vector<Vec3>& by_height) const {
   double taken = 0.0;
   for (std::size_t h = 0; h < by_height.size(); ++h)
     if (static_cast<double>(h) * box_.size.z() > bed_height_ * static_cast<double>(by_height.size() - 1))
@@ -86,17 +96,17 @@ double BedSurface::taken_by_solids(const Snapshot& snapshot, const FluidSource::
   return taken;
 }
 
-void BedSurface::measure(const Snapshot& snapshot, bool again) {
+void BedSurface::measure(const Snapshot& snapshot) {
   const BedLayers::Bed bed = layers_.bed(snapshot);
   bulk_ = bed.solid_fraction;
   bed_height_ = bed.height;
   if (!flow_ || flow_->shields_stress <= 0.0) return;
-  if (again && needs_momentum() && snapshot.momentum == nullptr) return;  // that of the checkpoint
+  if (lacks_momentum(snapshot)) return;  // the stress is that of the checkpoint
   bed_stress_ = ramp_at(snapshot.time, flow_->ramp) * flow_->driving_stress * hydraulic_radius();
   if (!flow_->measured || snapshot.fluid == nullptr) return;
   const FluidSource::Drive drive = snapshot.fluid->drive();
   const double plan = box_.size.x() * box_.size.y(), width = layers_.width();
-  const double taken = drive.on_top.x() + taken_by_solids(snapshot, drive) + layers_.force_on_obstacles(snapshot, bed);
+  const double taken = drive.on_top.x() + taken_by_obstacles(snapshot, drive);
   const double left = drive.body_force.x() * (flow_depth() - bed.obstacles_above / plan) - taken / plan;
   bed_stress_ = left * width / (width + flow_->side_walls * flow_depth());
 }
@@ -230,10 +240,12 @@ std::optional<BedFlow> bed_flow(const RunContext& run) {
   flow.shields_stress =
       (run.grains->reference_density - run.fluid->density) * run.gravity.norm() * run.grains->reference_diameter;
   flow.driving_stress = run.fluid->density * run.gravity.x();
-  flow.has_solids = run.fluid->has_solids;
+  const GrainContext& grains = *run.grains;
+  const std::size_t spheres = grains.obstacles.spheres.size();
+  const bool are_the_bed = grains.supplied.empty() && static_cast<GlobalId>(spheres) == grains.count();
+  flow.has_obstacles = run.fluid->has_solids || (spheres > 0 && !are_the_bed);
   flow.ramp = run.ramp;
-  flow.measured =
-      run.fluid->steered || run.fluid->top_drags || run.fluid->has_solids || !run.grains->obstacles.spheres.empty();
+  flow.measured = run.fluid->steered || run.fluid->top_drags || run.fluid->has_solids || spheres > 0;
   return flow;
 }
 

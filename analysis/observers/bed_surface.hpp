@@ -24,6 +24,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,7 +57,7 @@ struct BedFlow {
   double shields_stress = 0.0;  // Pa: (rho_s - rho_f) g d; 0: nothing drives the flow, or it is not known what side
                                 // walls take of it; no stress is shown
   bool measured = false;        // the forces are those of the moment (FluidSource::drive())
-  bool has_solids = false;      // whose force by height is needed (Snapshot::momentum); without, all counts as above
+  bool has_obstacles = false;   // solids or spheres, whose force by height is needed (Snapshot::momentum)
   double ramp = 0.0;            // s in which gravity rises, from the start of the run
 };
 
@@ -69,8 +70,9 @@ public:
 
   std::string name() const override { return "bed_surface"; }
   double every() const override { return keys_.every; }
-  bool needs_momentum() const override { return flow_ && flow_->shields_stress > 0.0 && flow_->has_solids; }
-  void observe(const Snapshot& snapshot) override;  // a step seen before does not count again
+  bool needs_momentum() const override { return flow_ && flow_->shields_stress > 0.0 && flow_->has_obstacles; }
+  // A step seen before does not count again, and one without the momentum it needs not at all.
+  void observe(const Snapshot& snapshot) override;
 
   // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
   // static_time is over); over a bed in a fluid flow_depth (m), hydraulic_radius (m), and where a slope, a steering
@@ -90,10 +92,13 @@ public:
   bool load(ArchiveReader& archive) override;
 
 private:
-  void measure(const Snapshot& snapshot, bool again);
-  double taken_by_solids(const Snapshot& snapshot, const FluidSource::Drive& drive) const;  // N, along x, above the bed
-  double flow_depth() const;                                                                // m
-  double hydraulic_radius() const;                                                          // m
+  void measure(const Snapshot& snapshot);
+  bool lacks_momentum(const Snapshot& snapshot) const;
+  double taken_by_obstacles(const Snapshot& snapshot,
+                            const FluidSource::Drive& drive) const;  // N, along x, above the bed
+  double above_bed(const std::vector<Vec3>& by_height) const;        // N
+  double flow_depth() const;                                         // m
+  double hydraulic_radius() const;                                   // m
   SavedSettings settings() const;
 
   MPI_Comm communicator_;
@@ -102,7 +107,8 @@ private:
   std::optional<BedFlow> flow_;
   double diameter_;  // m
   BedLayers layers_;
-  double bed_height_ = 0.0, bulk_ = 0.0, bed_stress_ = 0.0;  // m, 1, Pa: latest
+  double bed_height_ = 0.0, bulk_ = 0.0;                          // m, 1: latest
+  double bed_stress_ = std::numeric_limits<double>::quiet_NaN();  // Pa: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
   std::vector<double> sums_;          // sums of the diagnostics but static_bed_height, and of the bulk's solid fraction

@@ -377,9 +377,10 @@ void InterpolatedBounceBack<Real>::add_moments(const Piece& piece) const {
 
 template <typename Real>
 void InterpolatedBounceBack<Real>::add_by_height(const Batch& b, const Piece& piece) const {
+  const bool is_obstacle = bodies_[static_cast<std::size_t>(piece.body)].is_obstacle;
   for (int k = piece.first; k < piece.end(); ++k) {
     const auto at = [&](int axis) { return LatticeFixed::from(static_cast<double>(values_.momentum[axis][k])); };
-    by_height_->at(piece.body, 2 * b.plane + 1 + component(b.tag[k], 2)) += {at(0), at(1), at(2)};
+    by_height_->add(piece.body, is_obstacle, 2 * b.plane + 1 + component(b.tag[k], 2), {at(0), at(1), at(2)});
   }
 }
 

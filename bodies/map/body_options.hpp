@@ -27,6 +27,8 @@ struct LinkOptions {
 struct BodyOptions {
   LinkOptions links;
   bool keep_covered_momentum = false;  // a body gets the momentum, relative to its own, of cells that it covers
+  // Spheres whose momentum by height is counted apart as well; ascending.
+  std::vector<GlobalId> obstacles = {};
 };
 
 }  // namespace thalweg::bodies

@@ -105,6 +105,7 @@ struct LinkBody {
   // Sums over this rank's links in the present step.
   FixedVec3 force, torque;
   bool turns = true;          // false: the torque is not needed and not summed
+  bool is_obstacle = false;   // of BodyOptions
   std::int64_t mass = 0;      // LatticeFixed: given to the fluid, sum f_i' - f_i^c and what the caller adds
   std::int64_t pressure = 0;  // LatticeFixed: sum w_i (rho - rho_rest)(x_f), rho_rest that of the fluid at rest
 

@@ -132,6 +132,7 @@ struct MomentumBudget {
   std::vector<PlaneMomentum> planes;      // of cells, from the floor
   std::vector<Vec3> on_grains;            // N, by height: entry h lies h half cells above the floor, h = 0 .. 2 n_z
   std::vector<Vec3> on_solids, on_sides;  // N, on solids, and on the faces across x and y, by height as on_grains
+  std::vector<Vec3> on_obstacles;         // N, by height, that of on_grains on obstacles; empty: there are none
   Vec3 on_top = Vec3::Zero();             // N, on the face z_high
   Vec3 driving = Vec3::Zero();            // N/m^3, of the force that drives the fluid
   Vec3 driving_of_grains = Vec3::Zero();  // N/m^3, that part of it which the volume of grains feels, too

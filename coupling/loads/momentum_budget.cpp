@@ -85,6 +85,7 @@ MomentumBudget momentum_budget_of(lbm::Fluid<Real>& fluid, const Units& units, d
   budget.planes = planes_of(fluid, units);
   budget.on_grains = over_ranks(given.on_grains, fluid, units.force());
   budget.on_solids = over_ranks(given.on_solids, fluid, units.force());
+  if (!given.on_obstacles.empty()) budget.on_obstacles = over_ranks(given.on_obstacles, fluid, units.force());
   std::vector<FixedVec3> on_sides(given.on_grains.size());
   budget.on_top = fluid.wall_forces(reference, &on_sides)[5] * units.force();
   budget.on_sides = over_ranks(on_sides, fluid, units.force());

@@ -22,7 +22,7 @@ std::vector<Diagnostic> final_bed(MPI_Comm communicator, const Case& c, const Sy
   const double fraction = find_diagnostic(surface->results(), "bulk_solid_fraction_mean").value_or(0.0);
   bed.insert(bed.begin() + 1, {"porosity", "1", 1.0 - fraction});
   if (fraction < loosest_bed) bed.resize(2);
-  // What solids take above the bed is known in steps for which it was asked (BedSurface::needs_momentum()).
+  // What obstacles take above the bed is known in steps for which it was asked (BedSurface::needs_momentum()).
   if (surface->needs_momentum())
     std::erase_if(bed, [](const Diagnostic& d) { return d.name == "bed_stress" || d.name == "shields_number"; });
   return bed;

@@ -3,6 +3,7 @@
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/grain_weight.hpp"
+#include "driver/estimate/obstacles.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/fluid_setup.hpp"
 #include "driver/setup/turnover_setup.hpp"
@@ -17,6 +18,7 @@ coupling::LatticeParameters lattice_parameters(const Case& c) {
   for (const SolidCase& solid : c.solids) parameters.solid_motions.push_back(motion_of(solid));
   if (c.system != SystemKind::resolved) return parameters;
   parameters.bodies.keep_covered_momentum = c.coupling.covered_momentum == coupling::CoveredMomentum::to_grain;
+  for (const analysis::SphereInBed& sphere : obstacles_of(c).spheres) parameters.bodies.obstacles.push_back(sphere.id);
   parameters.load = c.coupling.load;
   parameters.wall_forces = c.analysis.wall_forces.has_value();
   parameters.sub_steps = static_cast<int>(grain_steps(c));

@@ -40,6 +40,7 @@ struct WaterBox {
   std::vector<dem::PrescribedMotion> assemblies;
   std::vector<dem::ClumpSeed> clumps;
   std::vector<dem::Sink> sinks;
+  std::vector<GlobalId> obstacles;                   // whose momentum by height is counted apart
   std::vector<bodies::SolidShape> solids;            // m
   std::vector<dem::PrescribedMotion> solid_motions;  // of the first of them
 };
@@ -93,6 +94,7 @@ std::unique_ptr<LatticeSystem<Real>> make_system(const WaterBox& box, MPI_Comm c
   p.sub_steps = box.sub_steps;
   p.wall_forces = box.wall_forces;
   p.bodies.keep_covered_momentum = box.keep_covered_momentum;
+  p.bodies.obstacles = box.obstacles;
   p.full_gravity = box.full_gravity;
   p.load = box.load;
   if (box.initial)

@@ -248,24 +248,53 @@ TEST(BedSurface, LeavesOutWhatSolidsFillAndTake) {
   expect_stress(by_height, 0.1 * taken * (41 + 120));
 }
 
-// The same of spheres that are obstacles: an eighth of the grains of a row stands in the flow and takes 0.7 N.
+// The same of a sphere that is an obstacle, by height: what it takes of the flow above the bed, and of its volume what
+// is there, wherever its middle is. Without other grains it is the bed, from which nothing is subtracted.
 TEST(BedSurface, LeavesOutWhatOtherObstaclesTake) {
   Spheres spheres(world);
   std::vector<Vec3> bed = cubic_lattice(10);
   const auto post = static_cast<GlobalId>(bed.size());
   bed.emplace_back(8.0 * d, 4.0 * d, 20.0 * d);
   const DrivenFluid fluid({Vec3(300.0, 0.0, 0.0), Vec3::Zero()});
-  BedSurface surface(world, spheres.box(), keys(), d, BedFlow{0, 1e9, 80.0, true}, 0.0, {{post}});
-  Snapshot snapshot = spheres.at(0, bed);
-  snapshot.fluid = &fluid;
-  std::vector<Vec3> forces(snapshot.grains.id.size(), Vec3(100.0, 0.0, 0.0));
-  for (std::size_t i = 0; i < forces.size(); ++i)
-    if (snapshot.grains.id[i] == post) forces[i] = Vec3(0.7, 2.0, 3.0);
-  snapshot.grains.fluid_force = forces;
-  surface.observe(snapshot);
+  const BedFlow flow{0, 1e9, 80.0, true, true};
+  BedSurface surface(world, spheres.box(), keys(), d, flow, 0.0, {{post}});
+  EXPECT_TRUE(surface.needs_momentum());
+  MomentumBudget budget;
+  budget.on_solids.assign(2 * 64 + 1, Vec3::Zero());
+  budget.on_obstacles = budget.on_solids;
+  for (const int half_cells : {7, 40, 41, 80})  // the bed ends at 20 cells
+    budget.on_obstacles[static_cast<std::size_t>(half_cells)] = Vec3(0.01 * half_cells, 5.0, 6.0);
+  const auto observed = [&](BedSurface& of, const std::vector<Vec3>& grains) {
+    Snapshot snapshot = spheres.at(1, grains);
+    snapshot.fluid = &fluid;
+    snapshot.momentum = &budget;
+    of.observe(snapshot);
+    return value_of(of.diagnostics(), "bed_stress");
+  };
   const double plan = 16.0 * 8.0 * d * d, sphere = std::numbers::pi / 6.0 * d * d * d;
-  EXPECT_NEAR(value_of(surface.diagnostics(), "bed_stress"), 300.0 * (22.0 * d - sphere / plan) - 0.7 / plan,
-              300.0 * 2e-3 * sphere / plan);
+  const double taken = 0.01 * (41 + 80);
+  EXPECT_NEAR(observed(surface, bed), 300.0 * (22.0 * d - sphere / plan) - taken / plan, 300.0 * 2e-3 * sphere / plan);
+  BedSurface alone(world, spheres.box(), keys(), d, flow, 0.0, {{0}});
+  const double stress = observed(alone, {Vec3(8.0 * d, 4.0 * d, 0.5 * d)});
+  EXPECT_NEAR(stress, 300.0 * value_of(alone.diagnostics(), "flow_depth"), 1e-9);
+}
+
+// What a run has not recorded, as in a state it was restarted from without the analysis, is no measurement of a stress.
+TEST(BedSurface, DoesNotCountAStateWithoutTheMomentumItNeeds) {
+  Spheres spheres(world);
+  const DrivenFluid fluid({Vec3(300.0, 0.0, 0.0), Vec3::Zero()});
+  BedSurface surface(world, spheres.box(), keys(), d, BedFlow{0, 1e9, 80.0, true, true}, 0.0);
+  MomentumBudget budget;
+  budget.on_solids.assign(2 * 64 + 1, Vec3::Zero());
+  for (const int step : {7, 8}) {
+    Snapshot snapshot = spheres.at(step, cubic_lattice(10));
+    snapshot.fluid = &fluid;
+    if (step == 8) snapshot.momentum = &budget;
+    surface.observe(snapshot);
+    EXPECT_EQ(std::isnan(value_of(surface.diagnostics(), "bed_stress")), step == 7);
+  }
+  EXPECT_EQ(value_of(surface.results(), "measurements"), 1.0);
+  EXPECT_NEAR(value_of(surface.results(), "bed_stress_mean"), 300.0 * 22.0 * d, 1e-9);
 }
 
 // Grains that are still falling may fill the box; the means must outlive that.
