@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -22,6 +23,7 @@ public:
     double spheres = 0.0;                           // m^3, of all that share what follows: one, or the members
     double volume = 0.0, mass = 0.0, radius = 0.0;  // m^3, kg, m, of the sphere of the volume
     Vec3 velocity = Vec3::Zero();                   // m/s, of the centre
+    double lowest = std::numeric_limits<double>::infinity();                            // m, height of its lowest point
     Vec3 by_fluid = Vec3::Zero(), by_contacts = Vec3::Zero();                           // N
     Mat3 contacts = Mat3::Zero(), of_fluid = Mat3::Zero(), lubrication = Mat3::Zero();  // N m, about the centre
   };
@@ -44,6 +46,7 @@ public:
       Body& clump = clumps_.at(grains_.clump[i]);
       const Vec3 arm = snapshot.decomposition->box().difference(grains_.position[i], centres.at(grains_.clump[i]));
       clump.spheres += member.spheres;
+      clump.lowest = std::min(clump.lowest, member.lowest);
       clump.by_fluid += member.by_fluid;
       clump.by_contacts += member.by_contacts;
       clump.of_fluid += member.of_fluid + member.by_fluid * arm.transpose();
@@ -58,6 +61,7 @@ private:
   Body alone(std::size_t i) const {
     const double volume = volume_of(grains_.radius[i], 0.0);
     Body body{volume, volume, grains_.mass[i], grains_.radius[i], grains_.velocity[i]};
+    body.lowest = grains_.position[i].z() - grains_.radius[i];
     body.by_fluid = grains_.fluid_force[i];
     body.by_contacts = grains_.contact_force[i];
     body.contacts = contacts_[i];
@@ -72,18 +76,21 @@ private:
 };
 
 StressBalance::StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer,
-                             const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held)
+                             const StressBalanceKeys& keys, const BalanceScales& scales, std::vector<HeldGrains> held,
+                             std::vector<GlobalId> obstacles)
     : MeanObserver(communicator, StressBalanceKeys::section, keys.from, keys.every),
       n_(decomposition.cells()),
       spacing_(decomposition.spacing()),
       layers_(n_[2], spacing_, keys.layer.value_or(layer)),
       scales_(scales),
       held_(std::move(held)),
+      obstacles_(std::move(obstacles)),
       fluid_(static_cast<std::size_t>(n_[2]) * fluid_columns, 0.0),
       grains_(static_cast<std::size_t>(layers_.count()) * grain_columns, 0.0),
       given_(static_cast<std::size_t>(2 * n_[2] + 1), 0.0),
       sides_(given_.size(), 0.0),
       held_up_(static_cast<std::size_t>(2 * layers_.count() + 2), 0.0),
+      holding_(static_cast<std::size_t>(layers_.count()), 0.0),
       driving_(static_cast<std::size_t>(n_[2] + 1), 0.0) {
   if (decomposition.periodic()[2]) throw std::logic_error("a stress balance needs a top and a bottom");
 }
@@ -125,6 +132,34 @@ void StressBalance::add_grains(const Snapshot& snapshot) {
       reproducible_sums_by_bin(communicator(), layers_.count(), grain_columns,
                                [&](const TermTaker& take) { give_parts(snapshot, bodies, take); });
   for (std::size_t s = 0; s < sums.size(); ++s) grains_[s] += sums[s];
+  if (!held_.empty()) add_holding(snapshot, bodies);
+}
+
+// Obstacles that are all the grains are the bed (BedLayers).
+void StressBalance::add_holding(const Snapshot& snapshot, const BalancedBodies& bodies) {
+  const GrainView& grains = snapshot.grains;
+  const bool obstacles_are_the_bed = static_cast<std::int64_t>(obstacles_.size()) == grains.global_count;
+  const auto is_obstacle = [&](GlobalId id) {
+    return !obstacles_are_the_bed && std::binary_search(obstacles_.begin(), obstacles_.end(), id);
+  };
+  const auto give_forces = [&](const TermTaker& take) {
+    for (std::size_t i = 0; i < grains.id.size(); ++i) {
+      if (!is_held(held_, grains.id[i])) continue;
+      const BalancedBodies::Body body = bodies[i];
+      const double radius = grains.radius[i], lowest = grains.position[i].z() - radius;
+      const double force = -(body.by_fluid.x() + body.by_contacts.x()) / body.spheres;
+      const int first = is_obstacle(grains.id[i]) ? 0 : layers_.at(body.lowest);
+      for (int layer = first; layer < layers_.at(lowest + 2.0 * radius); ++layer)
+        take(layer, std::array{force * volume_between(radius, 0.0, layers_.bottom(layer + 1) - lowest, 2.0 * radius)});
+    }
+  };
+  const std::vector<double> sums = reproducible_sums_by_bin(communicator(), layers_.count(), 1, give_forces);
+  const std::vector<Vec3> none, &by_height = obstacles_are_the_bed ? none : snapshot.momentum->on_obstacles;
+  for (std::size_t l = 0; l < sums.size(); ++l) {
+    holding_[l] += sums[l];
+    const auto from = static_cast<std::size_t>(2 * layers_.first_plane(static_cast<int>(l) + 1) + 1);
+    for (std::size_t h = from; h < by_height.size(); ++h) holding_[l] += by_height[h].x();
+  }
 }
 
 // A row of grain_columns of each grain's part in each layer.
@@ -231,7 +266,8 @@ std::unique_ptr<Observer> make_observer(const StressBalanceKeys& keys, const Run
                              run.grains->reference_diameter, run.grains->body_force,
                              run.fluid->velocity_unit / std::sqrt(3.0)};
   return std::make_unique<StressBalance>(system.communicator, system.decomposition,
-                                         0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held());
+                                         0.25 * run.grains->smallest_diameter, keys, scales, run.grains->held(),
+                                         run.grains->obstacles.spheres);
 }
 
 }  // namespace thalweg::analysis

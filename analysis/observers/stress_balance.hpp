@@ -24,6 +24,10 @@
 //   driving stress    top, on fluid and on grains + integral from z to the top of rho_f g_x (1 - phi) + rho_s g_x phi,
 //                     and of what holds held grains
 // In steady state total stress and side wall stress together are the driving stress.
+//
+// The stress on a bed is the driving stress at its surface, the top of a layer, less that of side walls, and without
+// what holds the grains that reach from the bed through the surface: what the flow above gives to those is given to the
+// bed. What it gives to obstacles above the surface is not, and counts by height as that of solids does.
 #pragma once
 
 #include "analysis/observer/mean_observer.hpp"
@@ -72,18 +76,20 @@ class BalancedBodies;
 
 class StressBalance : public MeanObserver {
 public:
-  // layer: m, where the keys have none; layers are of whole planes of cells. z must not be periodic.
+  // layer: m, where the keys have none; layers are of whole planes of cells. z must not be periodic. obstacles: ids of
+  // held grains that are none of the bed, ascending.
   StressBalance(MPI_Comm communicator, const Decomposition& decomposition, double layer, const StressBalanceKeys& keys,
-                const BalanceScales& scales, std::vector<HeldGrains> held);
+                const BalanceScales& scales, std::vector<HeldGrains> held, std::vector<GlobalId> obstacles = {});
 
   bool needs_momentum() const override { return true; }
   bool needs_grain_stress() const override { return true; }
 
   // mean_from (s), measurements (1), bed_height (m): where, from above, the solid fraction first exceeds half of its
   // maximum, 0 where there is no bed (no grains, or less than a diameter between them and the top); bed_stress (Pa):
-  // the driving stress there less that of side walls and solids (its largest where there is no bed); largest_difference
-  // (1): of the total stress from the driving stress less the side walls', over the bed stress; largest_difference_at
-  // (m); and of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
+  // the driving stress there less that of side walls, solids and other obstacles, with what holds grains of the bed
+  // that reach above (the largest of driving less side walls' stress where there is no bed); largest_difference (1): of
+  // the total stress from the driving stress less the side walls', over the bed stress; largest_difference_at (m); and
+  // of the sum of stresses, largest_difference_of_sum, largest_difference_of_sum_at.
   std::vector<Diagnostic> results() const override;
   std::vector<std::string> remarks() const override;
 
@@ -131,6 +137,7 @@ private:
   void add_grains(const Snapshot& snapshot);
   void give_parts(const Snapshot& snapshot, const BalancedBodies& bodies, const TermTaker& take) const;
   void add_grains_at_walls(const Snapshot& snapshot);
+  void add_holding(const Snapshot& snapshot, const BalancedBodies& bodies);
   std::array<double, fluid_columns> fluid_of(int layer) const;
   LayerMeans means_of(int layer) const;
   void set_fluid_means(int layer, LayerMeans& means) const;
@@ -143,6 +150,7 @@ private:
   double above(int layer, const std::vector<double>& sums, int columns, int force, int lever) const;
   double above(int layer, GrainColumn force, GrainColumn lever) const;
   int bed_layer(const std::vector<LayerMeans>& layers) const;
+  double stress_on_bed(int layer) const;
   static Difference largest_difference(const std::vector<LayerMeans>& layers, double LayerMeans::*total,
                                        double bed_stress);
   std::vector<LayerMeans> all_means() const;
@@ -153,6 +161,7 @@ private:
   CellLayers layers_;
   BalanceScales scales_;
   std::vector<HeldGrains> held_;
+  std::vector<GlobalId> obstacles_;
   // Over measurements and all ranks, on every rank.
   std::vector<double> fluid_;    // fluid_columns of each plane
   std::vector<double> grains_;   // grain_columns of each layer
@@ -160,11 +169,15 @@ private:
   std::vector<double> sides_;    // N, along x, of the fluid on side walls by half planes
   std::vector<double> held_up_;  // of each layer: N, along x, of walls but the top on grains, and times the height at
                                  // which they act over the layer's bottom; last the same of the top
+  std::vector<double> holding_;  // of each layer: N, along x, that holds grains of the bed, by those parts of them that
+                                 // lie above it while others do not; and obstacles, less what the fluid gives to these
+                                 // above it
   std::vector<double> driving_;  // N/m^3 times fluid cells, along x, of each plane; last: N on the top
 
   // Sums in the order of a checkpoint.
-  static constexpr std::array stored{&StressBalance::fluid_, &StressBalance::grains_,  &StressBalance::given_,
-                                     &StressBalance::sides_, &StressBalance::held_up_, &StressBalance::driving_};
+  static constexpr std::array stored{&StressBalance::fluid_,  &StressBalance::grains_,  &StressBalance::given_,
+                                     &StressBalance::sides_,  &StressBalance::held_up_, &StressBalance::holding_,
+                                     &StressBalance::driving_};
 };
 
 }  // namespace thalweg::analysis

@@ -25,7 +25,7 @@ struct StressBalance::LayerMeans {
   Tensor kinetic{}, viscous{}, subgrid{}, reynolds{}, mean_flow{};
   double rotation = 0.0, contact_rotation = 0.0, sum = 0.0, total = 0.0, sides = 0.0, driving = 0.0;
 
-  double left() const { return driving - sides; }  // to the bed, by the side walls
+  double left() const { return driving - sides; }  // by the side walls
 };
 
 std::array<double, StressBalance::fluid_columns> StressBalance::fluid_of(int layer) const {
@@ -168,6 +168,20 @@ int StressBalance::bed_layer(const std::vector<LayerMeans>& layers) const {
   return layer >= 0 && top - layers_.bottom(layer + 1) < scales_.diameter ? -1 : layer;
 }
 
+// At the top of a layer, below which the bed is.
+double StressBalance::stress_on_bed(int layer) const {
+  const int plane = layers_.first_plane(layer + 1);
+  const double cell = spacing_ * spacing_ * spacing_;
+  double force = held_up_[static_cast<std::size_t>(2 * layers_.count())] - driving_.back();
+  for (int z = plane; z < n_[2]; ++z) force += driving_[static_cast<std::size_t>(z)] * cell;
+  for (std::size_t h = static_cast<std::size_t>(2 * plane + 1); h < sides_.size(); ++h) force -= sides_[h];
+  for (int l = layer + 1; l < layers_.count(); ++l)
+    force += grains_[static_cast<std::size_t>(l * grain_columns + outer_force_x)] +
+             held_up_[static_cast<std::size_t>(2 * l)];
+  force -= holding_[static_cast<std::size_t>(layer)];
+  return force / (n_[0] * n_[1] * spacing_ * spacing_ * static_cast<double>(measurements()));
+}
+
 StressBalance::Difference StressBalance::largest_difference(const std::vector<LayerMeans>& layers,
                                                             double LayerMeans::*total, double bed_stress) {
   Difference largest;
@@ -181,7 +195,7 @@ StressBalance::Difference StressBalance::largest_difference(const std::vector<La
 std::vector<Diagnostic> StressBalance::results() const {
   const std::vector<LayerMeans> layers = all_means();
   const int bed = bed_layer(layers);
-  double bed_stress = bed >= 0 ? layers[static_cast<std::size_t>(bed)].left() : 0.0;
+  double bed_stress = bed >= 0 ? stress_on_bed(bed) : 0.0;
   for (const LayerMeans& means : layers)
     if (bed < 0 && std::abs(means.left()) > std::abs(bed_stress)) bed_stress = means.left();
   const Difference total = largest_difference(layers, &LayerMeans::total, bed_stress);

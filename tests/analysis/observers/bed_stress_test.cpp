@@ -122,5 +122,81 @@ TEST(BedStress, OfAnObstacleHasTheSameBitsOnAnyRanks) {
   EXPECT_EQ(dealt.stress, alone.stress);
 }
 
+// m^3, of what grains of the bed cover above a height (m).
+double covered_above(double height, const WaterBox& box, const MomentumBudget& budget) {
+  const auto cells = static_cast<std::int64_t>(box.cells[0]) * box.cells[1];
+  std::int64_t covered = 0;
+  for (auto z = static_cast<std::size_t>(std::lround(height / box.spacing)); z < budget.planes.size(); ++z)
+    covered += cells - budget.planes[z].cells;
+  return static_cast<double>(covered) * std::pow(box.spacing, 3);
+}
+
+// N, along x, on obstacles above one height (m) and not above the other, negative if that is the lower one.
+double taken_between(double one, double other, const WaterBox& box, const MomentumBudget& budget) {
+  double taken = 0.0;
+  for (std::size_t h = 0; h < budget.on_obstacles.size(); ++h) {
+    const double height = 0.5 * static_cast<double>(h) * box.spacing - 1e-9 * box.spacing;
+    taken += (static_cast<double>(height > one) - static_cast<double>(height > other)) * budget.on_obstacles[h].x();
+  }
+  return taken;
+}
+
+// Under a lid that slides and down a slope. The stress balance sums what drives the fluid over its cells above the top
+// of a layer, the bed surface over the whole depth above its own height: they differ by the force on what the spheres
+// cover above, and by that on the height between and what obstacles take there. The rest of a start at rest, after ten
+// times H^2/(pi^2 nu) = 222 steps, is 5e-5. largest: difference in all, a share.
+void expect_one_stress(const Bed& bed, double largest) {
+  const auto system = system_of(bed.box);
+  advance(*system, 2200);
+  BedSurface surface = bed.surface(MPI_COMM_WORLD);
+  const BalanceScales scales{1000.0, 1000.0 * bed.box.viscosity, bed.d,
+                             [](double, double) { return Vec3(Vec3::Zero()); }, 1.0};
+  StressBalance balance(MPI_COMM_WORLD, *system->snapshot().decomposition, 0.25 * bed.d, {0.0, 1e-4}, scales,
+                        {{0, bed.count()}}, bed.obstacles.spheres);
+  record(*system);
+  const Snapshot snapshot = system->snapshot();
+  surface.observe(snapshot);
+  balance.observe(snapshot);
+  const double of_surface = value_of(surface.diagnostics(), "bed_stress");
+  const double height = value_of(surface.diagnostics(), "bed_height");
+  const double of_balance = value_of(balance.results(), "bed_stress");
+  const double top = value_of(balance.results(), "bed_height");
+  EXPECT_NEAR(top, height, 0.3 * bed.d);
+  const double room = bed.plan() * (top - height) + covered_above(top, bed.box, *snapshot.momentum);
+  const double force = 1000.0 * bed.box.gravity.x();
+  const double taken = taken_between(height, top, bed.box, *snapshot.momentum);
+  const double expected = of_surface + (taken - force * room) / bed.plan();
+  EXPECT_NEAR(of_balance, expected, 1e-4 * of_surface);
+  EXPECT_NEAR(of_balance, of_surface, largest * of_surface);
+}
+
+Bed driven_bed(double pull) {
+  Bed bed({18, 18, 27});
+  bed.box.gravity = Vec3(pull, 0.0, -9.8);
+  bed.box.plate_velocity = 0.01;
+  bed.box.bottom_at_rest = true;
+  return bed;
+}
+
+TEST(BedStress, OfStressBalanceAndBedSurfaceIsOne) {
+  for (const double pull : {0.0, 0.05}) {
+    Bed bed = driven_bed(pull);
+    bed.add_sheet();
+    expect_one_stress(bed, pull == 0.0 ? 1e-4 : 0.01);
+  }
+}
+
+// The same under the lid alone with one half as large again, which is an obstacle: half a plane of cells of what the
+// lid gives to it lies between the two heights.
+TEST(BedStress, OfStressBalanceAndBedSurfaceIsOneBesideAnObstacle) {
+  Bed bed = driven_bed(0.0);
+  const double radius = 0.75 * bed.d;
+  const Vec3 centre(1.5 * bed.d, 1.5 * bed.d, 1.1 * bed.d);
+  bed.add_sheet(centre, radius);
+  bed.box.obstacles = bed.obstacles.spheres = {bed.count()};
+  bed.add_sphere(centre, radius);
+  expect_one_stress(bed, 0.05);
+}
+
 }  // namespace
 }  // namespace thalweg::analysis::bed_stress_test
