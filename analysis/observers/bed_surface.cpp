@@ -25,6 +25,10 @@ double mean_height(const std::vector<double>& surface) {
   return std::accumulate(surface.begin(), surface.end(), 0.0) / columns;
 }
 
+bool is_stress(const Diagnostic& diagnostic) {
+  return diagnostic.name == "bed_stress" || diagnostic.name == "shields_number";
+}
+
 // The mean of each column over the pictures that show a static pixel in it; 0 where none does.
 std::vector<double> means_of(const std::vector<double>& sums, const std::vector<double>& counts) {
   std::vector<double> means;
@@ -67,11 +71,13 @@ void BedSurface::observe(const Snapshot& snapshot) {
       surface_counts_[c] += StaticPixels::is_static(pixels_.surface()[c]) ? 1.0 : 0.0;
     }
   }
-  if (!counts_from(keys_.from, snapshot.time) || lacks_momentum(snapshot)) return;
+  if (!counts_from(keys_.from, snapshot.time)) return;
+  const bool has_stress = !lacks_momentum(snapshot);
   ++measurements_;
+  if (has_stress) ++stresses_;
   std::size_t n = 0;
   for (const Diagnostic& diagnostic : diagnostics())
-    if (diagnostic.name != static_height) sums_[n++] += diagnostic.value;
+    if (diagnostic.name != static_height) sums_[n++] += has_stress || !is_stress(diagnostic) ? diagnostic.value : 0.0;
   sums_[n] += bulk_;
 }
 
@@ -130,12 +136,14 @@ std::vector<Diagnostic> BedSurface::diagnostics() const {
 }
 
 std::vector<Diagnostic> BedSurface::results() const {
-  const double count = static_cast<double>(measurements_);  // means of nothing are not a number
+  // Means of nothing are not a number.
+  const auto count = static_cast<double>(measurements_), stresses = static_cast<double>(stresses_);
   std::vector<Diagnostic> results;
   std::size_t n = 0;
   for (const Diagnostic& diagnostic : diagnostics())
     if (diagnostic.name != static_height)
-      results.push_back({diagnostic.name + "_mean", diagnostic.unit, sums_[n++] / count});
+      results.push_back(
+          {diagnostic.name + "_mean", diagnostic.unit, sums_[n++] / (is_stress(diagnostic) ? stresses : count)});
   results.push_back({"bulk_solid_fraction_mean", "1", sums_[n] / count});
   const double pictures = static_cast<double>(pictures_);
   results.push_back({static_height + "_mean", "m", mean_height(means_of(surface_sums_, surface_counts_))});
@@ -171,6 +179,7 @@ void BedSurface::save(ArchiveWriter& archive) const {
   save_settings(archive, "bed_surface", settings());
   archive.attribute("bed_surface/seen_step", seen_step_);
   archive.attribute("bed_surface/measurements", measurements_);
+  archive.attribute("bed_surface/stresses", stresses_);
   archive.attribute("bed_surface/pictures", pictures_);
   archive.attribute("bed_surface/latest_bed_height", bed_height_);  // a row of the series may come before the next
   archive.attribute("bed_surface/latest_bulk", bulk_);
@@ -192,6 +201,8 @@ bool BedSurface::load(ArchiveReader& archive) {
     return false;
   seen_step_ = archive.integer_attribute("bed_surface/seen_step");
   measurements_ = archive.integer_attribute("bed_surface/measurements");
+  stresses_ = archive.has("bed_surface/stresses") ? archive.integer_attribute("bed_surface/stresses")
+                                                  : measurements_;  // older checkpoints have none
   pictures_ = archive.integer_attribute("bed_surface/pictures");
   bed_height_ = archive.real_attribute("bed_surface/latest_bed_height");
   bulk_ = archive.real_attribute("bed_surface/latest_bulk");

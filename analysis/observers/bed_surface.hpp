@@ -71,7 +71,7 @@ public:
   std::string name() const override { return "bed_surface"; }
   double every() const override { return keys_.every; }
   bool needs_momentum() const override { return flow_ && flow_->shields_stress > 0.0 && flow_->has_obstacles; }
-  // A step seen before does not count again, and one without the momentum it needs not at all.
+  // A step seen before does not count again. One without the momentum it needs is no measurement of the stress.
   void observe(const Snapshot& snapshot) override;
 
   // bed_height (m), static_bed_height (m, mean of the columns that have a static pixel; not a number before the first
@@ -111,6 +111,7 @@ private:
   double bed_stress_ = std::numeric_limits<double>::quiet_NaN();  // Pa: latest
   StaticPixels pixels_;
   std::int64_t seen_step_ = -1, measurements_ = 0, pictures_ = 0;
+  std::int64_t stresses_ = 0;         // measurements of the stress
   std::vector<double> sums_;          // sums of the diagnostics but static_bed_height, and of the bulk's solid fraction
   std::vector<double> surface_sums_;  // m, of each column
   std::vector<double> surface_counts_;  // number of pictures in which each column has a static pixel

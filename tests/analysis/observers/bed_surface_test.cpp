@@ -280,7 +280,7 @@ TEST(BedSurface, LeavesOutWhatOtherObstaclesTake) {
 }
 
 // What a run has not recorded, as in a state it was restarted from without the analysis, is no measurement of a stress.
-TEST(BedSurface, DoesNotCountAStateWithoutTheMomentumItNeeds) {
+TEST(BedSurface, HasNoStressOfAStateWithoutTheMomentumItNeeds) {
   Spheres spheres(world);
   const DrivenFluid fluid({Vec3(300.0, 0.0, 0.0), Vec3::Zero()});
   BedSurface surface(world, spheres.box(), keys(), d, BedFlow{0, 1e9, 80.0, true, true}, 0.0);
@@ -293,7 +293,8 @@ TEST(BedSurface, DoesNotCountAStateWithoutTheMomentumItNeeds) {
     surface.observe(snapshot);
     EXPECT_EQ(std::isnan(value_of(surface.diagnostics(), "bed_stress")), step == 7);
   }
-  EXPECT_EQ(value_of(surface.results(), "measurements"), 1.0);
+  EXPECT_EQ(value_of(surface.results(), "measurements"), 2.0);
+  EXPECT_NEAR(value_of(surface.results(), "bed_height_mean"), 10.0 * d, 1e-9);
   EXPECT_NEAR(value_of(surface.results(), "bed_stress_mean"), 300.0 * 22.0 * d, 1e-9);
 }
 
