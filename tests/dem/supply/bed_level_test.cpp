@@ -41,16 +41,19 @@ Solid block(const Vec3& lower, const Vec3& upper) {
   return solid;
 }
 
+Plane wall_at(const Vec3& point, const Vec3& normal) {
+  Plane wall;
+  wall.point = point;
+  wall.normal = normal;
+  return wall;
+}
+
 TEST(BedLevel, OfWalls) {
-  Plane floor;
-  floor.point.z() = 0.002;
-  Plane slope;  // 45 degrees, upwards along x from x = 0.01
-  slope.point.x() = 0.01;
-  slope.normal = Vec3(-1.0, 0.0, 1.0).normalized();
-  Plane lid;
-  lid.point.z() = 0.035;
-  lid.normal = Vec3(0.0, 0.0, -1.0);
-  const Level level({floor, slope, lid, face_plane(box_on(1).box(), 0, false, 0.0)}, {});
+  const Vec3 uphill = Vec3(-1.0, 0.0, 1.0).normalized();  // 45 degrees, upwards along x from x = 0.01
+  std::vector<Plane> walls{wall_at({0.0, 0.0, 0.002}, Vec3::UnitZ()), wall_at({0.01, 0.0, 0.0}, uphill),
+                           wall_at({0.0, 0.0, 0.035}, -Vec3::UnitZ())};
+  walls.push_back(face_plane(box_on(1).box(), 0, false, 0.0));
+  const Level level(walls, {});
   EXPECT_EQ(level.at(0.005, 0.01), 0.002);
   EXPECT_NEAR(level.at(0.03, 0.01), 0.02, 1e-15);
 

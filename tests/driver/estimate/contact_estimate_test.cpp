@@ -114,8 +114,10 @@ TEST(Overlaps, OfGrainsThatAreMet) {
   shaken.domain.faces[bottom].type = lbm::FaceType::moving;
   shaken.domain.faces[bottom].oscillation = {Vec3(0.0, 0.0, 4e-3), 100.0};
   EXPECT_NEAR(expected_overlaps(shaken).speed, 2.0 * swing, 1e-9);
-  sheared.walls.push_back(
-      {.point = Vec3(0.0, 0.0, 0.05), .normal = Vec3(0.0, 0.0, -2.0), .velocity = Vec3(9.0, 0.0, 0.0)});
+  sheared.walls.emplace_back();
+  sheared.walls.front().point = Vec3(0.0, 0.0, 0.05);
+  sheared.walls.front().normal = Vec3(0.0, 0.0, -2.0);
+  sheared.walls.front().velocity = Vec3(9.0, 0.0, 0.0);
   EXPECT_EQ(speed_off_walls(sheared), 0.0);
   EXPECT_EQ(expected_overlaps(sheared).speed, falling);
   sheared.walls.front().velocity.z() = -2.0;
