@@ -161,7 +161,7 @@ def describe_reach(report):
     trend = found["bed_level_trend"]
     if trend is not None:
         way = "falling" if trend < 0.0 else "rising"
-        error = found["bed_level_trend_error"]
+        error = found.get("bed_level_trend_error")
         known = "" if error is None else f" +- {error:.2g}"
         report.say(
             "reach", f"bed at {found['bed_level_mean']:.4g} {units.named('m')},"

@@ -61,11 +61,12 @@ class ReachTest(made_up.MadeUpFolder):
         self.assertEqual(self.lines_of_reach(), [
             "reach      left out: the means along x are in summary.json, which the run writes at its end."])
         means = {"q_star_mean": 0.25, "q_star_error": 0.05, "mean_from": 1.0, "bed_level_mean": 0.02, "bed_level_trend": -3e-4,
+                 "bed_level_trend_error": 1e-4, "q_s_error_holds": 0.0,
                  "arrived_grains": 12, "left_grains": 10, "residence_time_mean": None}
         (self.folder / "summary.json").write_text(json.dumps({"reach": means, "simulated_time": 3.0}), encoding="utf-8")
         self.assertEqual(self.lines_of_reach(), [
-            "reach      q* = 0.25 +- 0.05, mean of all sections and of the run from 1 to 3 s",
-            "reach      bed at 0.02 m, falling by 0.0003 m/s",
+            "reach      q* = 0.25 +- 0.05, mean of all sections and of the run from 1 to 3 s (too few records, the error is larger)",
+            "reach      bed at 0.02 m, falling by 0.0003 +- 0.0001 m/s",
             "reach      12 grains came in, 10 left"])
 
     def test_in_grain_units(self):

@@ -99,11 +99,11 @@ output: {checkpoint: {every: 0.01}}
             self.assertAlmostEqual(float(found), axes[1] / numpy.prod(axes) ** (1.0 / 3.0), delta=6e-3, msg=name)
 
     def test_size_classes_and_supplies_take_clumps_by_their_size(self):
-        """Eight clumps of 3 and 4 mm and those that come in: a class has the share of its number times d^3."""
+        """Eight clumps of 3 and 4 mm and those that come in: a class has the share of its number times d^3, at the end."""
         mixed = ("--set", "grains.0.shape={stl: triaxial.stl, spheres: 4}", "--set",
                  "grains.0.diameter={sizes: [3.0e-3, 4.0e-3], fractions: [0.5, 0.5]}", "--set", "run.until=0.03", "--set",
                  "supplies=[{population: 0, rate: 400, region: {lower: [0, 0, 0.045], upper: [0.024, 0.024, 0.055]}}]",
-                 "--set", "analysis={fractional_transport: {}}")
+                 "--set", "analysis={fractional_transport: {from: 0.0299}}", "--set", "output.series={every: 0.01}")
         self.run_well("run", self.case, *mixed)
         with h5py.File(self.last_checkpoint("run")) as saved:
             mass = saved["grains/clump_mass"][:, 0]
