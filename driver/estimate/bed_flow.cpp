@@ -32,7 +32,7 @@ double obstacles_below(const analysis::VolumeBelow& below, double height) {
   return below.obstacle.back() - analysis::obstacles_above(below, height);
 }
 
-// Solid fraction of held grains: fewer stand apart, and others lie between them.
+// Solid fraction of held grains where no others settle between them: fewer stand apart and are no bed.
 constexpr double loosest_held_bed = 0.2;
 
 // How many of bed and top hold the flow.
@@ -75,7 +75,8 @@ double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBel
   for (std::size_t k = 0; k < filled.size(); ++k) filled[k] += spheres[k];
   const std::vector<double> stays = held_below(c, held, layers);
   const analysis::VolumeBelow below{stays, spacing, area, filled};
-  const double floor = held.empty() ? 0.0 : surface_of(below, loosest_held_bed);
+  // Held grains looser than a bed have room for others between them.
+  const double floor = held.empty() ? 0.0 : surface_of(below, settles > 0.0 ? loosest_bed : loosest_held_bed);
   if (settles == 0.0) return floor;
   if (floor > 0.0)  // what settles lies on it
     return filled_height(settles + area * floor - obstacles_below(below, floor), below);

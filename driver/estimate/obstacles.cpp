@@ -115,15 +115,21 @@ HeldLayer layer_of(const Case& c, const beds::Population& population) {
   return {region.lower.z(), region.upper.z(), diameter, volume};
 }
 
-// Adds the volume (m^3) of a sheet of spheres with their centres at this height (m).
-void add_sheet(double centre, double diameter, double volume, double spacing, std::vector<double>& below) {
+// Adds a sheet of spheres of this volume (m^3) with their centres at this height (m) to the volumes in layers, that
+// below level k at k.
+void add_sheet(double centre, double diameter, double volume, double spacing, std::vector<double>& layers) {
   const auto share = [&](double height) {  // of a sphere, below this height
     const double part = std::clamp((height - centre) / diameter + 0.5, 0.0, 1.0);
     return part * part * (3.0 - 2.0 * part);
   };
-  const double under_the_floor = share(0.0);
-  for (std::size_t k = 0; k < below.size(); ++k)
-    below[k] += volume * (share(static_cast<double>(k) * spacing) - under_the_floor);
+  const double lowest = std::clamp((centre - 0.5 * diameter) / spacing, 0.0, static_cast<double>(layers.size()));
+  const auto first = static_cast<std::size_t>(lowest);
+  double before = share(static_cast<double>(first) * spacing);
+  for (std::size_t k = first + 1; k < layers.size() && before < 1.0; ++k) {
+    const double now = share(static_cast<double>(k) * spacing);
+    layers[k] += volume * (now - before);
+    before = now;
+  }
 }
 
 // volume_below(), which takes a twentieth of a second. Keeps the last answers: the estimates of a case ask for the same
@@ -182,6 +188,7 @@ std::vector<double> held_below(const Case& c, const std::vector<HeldLayer>& held
     for (int n = 0; n < sheets; ++n)
       add_sheet(layer.lower + (n + 0.5) / sheets * height, layer.diameter, layer.volume / sheets, spacing, below);
   }
+  std::partial_sum(below.begin(), below.end(), below.begin());
   return below;
 }
 

@@ -1,5 +1,6 @@
 #include "driver/estimate/supplied_grains.hpp"
 
+#include "beds/packing/packing.hpp"
 #include "beds/supplies.hpp"
 #include "driver/estimate/reference_grain.hpp"
 
@@ -57,7 +58,9 @@ std::int64_t most_rows(const Case& c) {
 
 double mean_growth(const Case& c) {
   const double rows = static_cast<double>(grain_rows(c)), most = static_cast<double>(most_rows(c));
-  return rows > 0.0 ? 0.5 * (rows + most) / rows : 1.0;
+  if (rows == 0.0) return 1.0;
+  const double fit = c.disks ? most : rows * beds::densest_bed * c.domain.size.prod() / grain_volume(c);
+  return 0.5 * (rows + std::min(most, std::max(rows, fit))) / rows;
 }
 
 double ids_of_run(const Case& c) {

@@ -20,7 +20,8 @@ double grains_per_second(const Case& c, const beds::SupplyKeys& supply);
 // where there are sinks, at most twice those of the start.
 std::int64_t most_rows(const Case& c);
 
-// Rows in the box in the mean of the run over those at the start, to which supplies add evenly; 1 without any.
+// Rows in the box in the mean of the run over those at the start, to which supplies add evenly, as far as the box can
+// hold them; 1 without any.
 double mean_growth(const Case& c);
 
 // Ids that have been given by the end of the run: those of the start and of all that are supplied, whether they have

@@ -274,12 +274,13 @@ void check_recycling(const Case& c, const io::YamlDocument& document) {
                            fmt::format("an inlet that recycles takes the flow along the face from its plane; give zero "
                                        "for all but {}",
                                        axis_name[axis]));
-    if (*inlet.recycling_plane >= c.domain.size[axis])
+    const int plane = layer_at(*inlet.recycling_plane, c.domain.spacing);
+    const int cells = cells_of(c.domain)[static_cast<std::size_t>(axis)];
+    if (plane >= cells)
       throw document.error(key_of_face(face, document) + ".recycling_plane",
                            fmt::format("the plane must lie in the box; give a position along {} below {:g} m",
                                        axis_name[axis], c.domain.size[axis]));
-    const int plane = layer_at(*inlet.recycling_plane, c.domain.spacing);
-    if (plane == (face % 2 == 0 ? 0 : cells_of(c.domain)[static_cast<std::size_t>(axis)] - 1))
+    if (plane == (face % 2 == 0 ? 0 : cells - 1))
       throw document.error(key_of_face(face, document) + ".recycling_plane",
                            fmt::format("the plane lies in the cells of the inlet itself; give a position along {} more "
                                        "than {:g} m from the face, where the flow has developed",

@@ -165,11 +165,9 @@ void add_stress_at_base(const Case& c, Lines& lines) {
   if (const double ratio = stress_ratio_at_base(c); ratio > 0.0)
     lines.push_back(fmt::format(
         "base       of the bed: the slope requires a shear stress of {:.3g} times the normal stress; {} sustain about "
-        "{:.3g}",
-        ratio,
-        only_friction_holds_the_bed(c) ? "grains of this friction"
-                                       : "these grains more than spheres without rolling friction and bridges, which",
-        bulk_friction(c)));
+        "{:.3g}{}",
+        ratio, only_friction_holds_the_bed(c) ? "grains of this friction" : "spheres held by this friction alone",
+        bulk_friction(c), only_friction_holds_the_bed(c) ? "" : ", and these grains more"));
 }
 
 }  // namespace

@@ -314,7 +314,9 @@ template <typename Real>
 void Fluid<Real>::load(ArchiveReader& archive) {
   load_populations(archive);
   walls_.load(archive, decomposition_, block_);
-  if (control_) {
+  if (control_ && archive.has(FlowControl::name_of_force(control_->target().axis))) {  // none has controlled it so far
+    begin_control_of(archive, 1.0);
+  } else if (control_) {
     control_->load(archive);
     parameters_.force[control_->target().axis] = control_->force();
   }

@@ -341,9 +341,10 @@ class Run:
 
     @cached_property
     def driven_alike_since(self):
-        """Time (s) of the last restart that changed gravity or the density of the fluid, as run.log tells; -inf where
-        none did."""
-        return last_change(sessions_of(self.folder), ("gravity.", "fluid.density", "run.ramp"))
+        """Time (s) of the last restart that changed the density of the fluid, what drives it or what holds it, as
+        run.log tells; -inf where none did."""
+        drives = ("gravity.", "fluid.density", "fluid.mean_velocity", "domain.boundaries", "run.ramp")
+        return last_change(sessions_of(self.folder), drives)
 
     @property
     def driven_by_slope(self):

@@ -282,6 +282,8 @@ class History(unittest.TestCase):
         slope = "gravity.slope: 0.1 -> 0.2"
         course = [session(None), session(2, slope), session(3, "run.until: 3 -> 4")]
         self.assertEqual(last_change(course, ("gravity.",)), 2.0)
+        steered = session(4, "fluid.mean_velocity.velocity: 0.02 -> none")
+        self.assertEqual(last_change([*course, steered], ("gravity.", "fluid.mean_velocity")), 4.0)
         self.assertEqual(last_change([*course, session(1)], ("gravity.",)), -math.inf)
         self.assertEqual(last_change([*course, session(1), session(1.5, slope)], ("gravity.",)), 1.5)
         self.assertEqual(last_change([*course, session(None)], ("gravity.",)), -math.inf)   # from the start again

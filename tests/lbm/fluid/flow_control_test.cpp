@@ -155,6 +155,10 @@ TEST(FlowControl, BeginsAFlowOfAGivenForceWithIt) {
     held.advance();
     ASSERT_NEAR(held.parameters().force[0], 1e-4, 1e-10) << step;
   }
+  Fluid<double> restarted(decomposition, MPI_COMM_SELF, viscous(), faces);
+  restarted.control_flow({0, mean(first), 50.0, 5});
+  test::load(restarted, saved);
+  EXPECT_EQ(restarted.parameters().force[0], 1e-4);
 }
 
 // A flow that has not reached its target, as the start of another run: saved where the control looks next, it goes on
