@@ -147,6 +147,10 @@ double narrowest_grain(const Case& c) {
   return width;
 }
 
+beds::RegionKeys region_of(const Case& c, const beds::Population& grains) {
+  return grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+}
+
 double grain_volume(const Case& c) {
   double volume = 0.0;
   for (const beds::Population& population : c.grains) volume += population.volume();

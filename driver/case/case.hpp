@@ -233,7 +233,9 @@ double largest_extent(const Case& c);                 // m, the same with clumps
 double smallest_diameter(const Case& c);              // m; 0 without grains
 double narrowest_grain(const Case& c);                // m, the same with clumps by their shortest axis
 double grain_volume(const Case& c);                   // m^3, of all grains
-model_fluid::MeanGrain mean_grain(const Case& c);     // mean of all grains
+// m, in which the grains of a population are placed that has no positions: the one given, or the box.
+beds::RegionKeys region_of(const Case& c, const beds::Population& grains);
+model_fluid::MeanGrain mean_grain(const Case& c);  // mean of all grains
 model_fluid::ModelFluidParameters model_fluid_of(const Case& c);
 // m/s, of the model fluid around a grain without neighbours, the fastest there is; 0 without a model fluid
 double fastest_model_fluid(const Case& c);

@@ -340,7 +340,7 @@ double narrowest_section(double solid_fraction) {
 double densest_bed_of(const Case& c) {
   double fraction = 0.0;
   for (const beds::Population& grains : c.grains) {
-    const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+    const beds::RegionKeys room = region_of(c, grains);
     if (grains.held()) fraction = std::max(fraction, grains.volume() / (room.upper - room.lower).prod());
   }
   return settled_height(c) > 0.0 && has_free_grains(c) ? std::max(fraction, settled_fraction(c)) : fraction;
@@ -365,7 +365,7 @@ void consider_pores(const Case& c, FlowEstimate& flow) {
 double rigid_speed(const Case& c, const beds::Population& grains) {
   const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
   std::vector<Vec3> places = grains.placement.positions;
-  const beds::RegionKeys room = grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+  const beds::RegionKeys room = region_of(c, grains);
   for (int corner = 0; corner < 8 && grains.placement.positions.empty(); ++corner)
     places.emplace_back((corner & 1 ? room.upper : room.lower)[0], (corner & 2 ? room.upper : room.lower)[1],
                         (corner & 4 ? room.upper : room.lower)[2]);

@@ -111,7 +111,7 @@ HeldLayer layer_of(const Case& c, const beds::Population& population) {
     const double half = std::sqrt(3.0 * (deviation * deviation + diameter * diameter / 20.0));
     return {middle - half, middle + half, diameter, volume};
   }
-  const beds::RegionKeys region = population.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
+  const beds::RegionKeys region = region_of(c, population);
   return {region.lower.z(), region.upper.z(), diameter, volume};
 }
 

@@ -181,8 +181,8 @@ double gap_at(const Case& c, const beds::Population& grains, std::size_t side) {
 
 // m, of the bed that the grains of a population make over the region, or the box.
 double height_over_region(const Case& c, const beds::Population& grains) {
-  const Vec3 plan =
-      grains.placement.region ? Vec3(grains.placement.region->upper - grains.placement.region->lower) : c.domain.size;
+  const beds::RegionKeys region = region_of(c, grains);
+  const Vec3 plan = region.upper - region.lower;
   return grains.volume() / (settled_fraction(c) * plan.x() * plan.y());
 }
 

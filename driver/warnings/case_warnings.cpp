@@ -196,14 +196,7 @@ double slope_with_ratio(const Case& c, double ratio) {
     set_slope(other, slope);
     return stress_ratio_at_base(other) <= ratio;
   };
-  double low = 1e-3 * *c.gravity.slope, high = *c.gravity.slope;
-  if (!holds(low)) return 0.0;
-  constexpr int halvings = 20;
-  for (int n = 0; n < halvings; ++n) {
-    const double middle = 0.5 * (low + high);
-    (holds(middle) ? low : high) = middle;
-  }
-  return low;
+  return steepest_slope(*c.gravity.slope, holds);
 }
 
 Warnings sliding_bed(const Case& c) {

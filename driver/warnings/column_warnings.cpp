@@ -41,14 +41,7 @@ double gentler_slope(const Case& c, double ratio) {
     other.gravity.slope = slope;
     return ratio_at_floor(column_of(other)).sum() <= ratio;
   };
-  double low = 1e-3 * *c.gravity.slope, high = *c.gravity.slope;
-  if (!holds(low)) return 0.0;
-  constexpr int halvings = 20;
-  for (int n = 0; n < halvings; ++n) {
-    const double middle = 0.5 * (low + high);
-    (holds(middle) ? low : high) = middle;
-  }
-  return low;
+  return steepest_slope(*c.gravity.slope, holds);
 }
 
 // The whole bed flows where its floor cannot hold it: what is found then depends on how thick it is.

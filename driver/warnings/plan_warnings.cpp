@@ -175,10 +175,6 @@ bool settles(const Case& c, const beds::Population& grains) {
          grains.placement.positions.empty() && !floats(c, grains);
 }
 
-beds::RegionKeys region_of(const Case& c, const beds::Population& grains) {
-  return grains.placement.region.value_or(beds::RegionKeys{Vec3::Zero(), c.domain.size});
-}
-
 // Solid fraction in the region of a population, of all that settle.
 double fraction_around(const Case& c, const beds::Population& grains) {
   const beds::RegionKeys here = region_of(c, grains);

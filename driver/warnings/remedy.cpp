@@ -80,6 +80,17 @@ Change spacing_change(const Case& c, double most) {
   });
 }
 
+double steepest_slope(double steepest, const std::function<bool(double slope)>& holds) {
+  double low = 1e-3 * steepest, high = steepest;
+  if (!holds(low)) return 0.0;
+  constexpr int halvings = 20;
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 Remedy with_grain_steps(const Case& c, Remedy remedy) {
   const Case after = changed(c, remedy);
   if (after.grains.empty()) return remedy;

@@ -62,6 +62,10 @@ Change fluid_step_change(double limit, int digits, Rounding rounding);
 // The largest spacing (m) of at most `most` of which every side of the domain is a whole number.
 Change spacing_change(const Case& c, double most);
 
+// The steepest slope (a tangent) from a thousandth of `steepest`, which does not hold, to it that holds, by bisection;
+// 0: there is none.
+double steepest_slope(double steepest, const std::function<bool(double slope)>& holds);
+
 // The remedy, and as many sub-steps or as short a step of the grains as it makes necessary.
 Remedy with_grain_steps(const Case& c, Remedy remedy);
 
