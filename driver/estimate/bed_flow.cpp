@@ -63,20 +63,19 @@ double surface_of(const analysis::VolumeBelow& below, double loosest) {
   return bulk_solid_fraction(below) < loosest ? 0.0 : bed_height(below, analysis::thin_layers_a_window / 2);
 }
 
-double settled_height(const Case& c, const Obstacles& obstacles, const SolidsBelow& solids,
-                      const std::vector<HeldLayer>& held) {
+double settled_height(const Case& c, const HeldGrains& held, const SolidsBelow& solids) {
   const PeriodicBox box = grain_box(c);
   const int layers = analysis::thin_layers(box.size.z(), reference_grain(c).diameter);
   const double spacing = box.size.z() / layers, area = box.size.x() * box.size.y();
-  const std::vector<double> spheres = analysis::union_below(box, obstacles.spheres, layers);
+  const std::vector<double> spheres = analysis::union_below(box, held.obstacles.spheres, layers);
   std::vector<double> filled = solids ? solids(layers) : std::vector<double>(spheres.size(), 0.0);
   const double settles = volume_that_settles(c) / settled_fraction(c);  // m^3, with its pores
-  if (settles == 0.0 && held.empty()) return surface_of({spheres, spacing, area, filled}, loosest_bed);
+  if (settles == 0.0 && held.layers.empty()) return surface_of({spheres, spacing, area, filled}, loosest_bed);
   for (std::size_t k = 0; k < filled.size(); ++k) filled[k] += spheres[k];
-  const std::vector<double> stays = held_below(c, held, layers);
+  const std::vector<double> stays = held_below(c, held.layers, layers);
   const analysis::VolumeBelow below{stays, spacing, area, filled};
   // Held grains looser than a bed have room for others between them.
-  const double floor = held.empty() ? 0.0 : surface_of(below, settles > 0.0 ? loosest_bed : loosest_held_bed);
+  const double floor = held.layers.empty() ? 0.0 : surface_of(below, settles > 0.0 ? loosest_bed : loosest_held_bed);
   if (settles == 0.0) return floor;
   if (floor > 0.0)  // what settles lies on it
     return filled_height(settles + area * floor - obstacles_below(below, floor), below);
@@ -123,10 +122,10 @@ double slope_for(const FlowNumbers& flow, double shields) {
 
 double settled_height(const Case& c) {
   if (c.grains.empty() || gravity_vector(c.gravity).z() == 0.0) return 0.0;
-  const Obstacles obstacles = obstacles_of(c);
+  HeldGrains held = held_grains_of(c);
+  if (periodic_axes(c.domain)[2]) held.layers.clear();
   const SolidsBelow solids = solids_below(c);
-  const std::vector<HeldLayer> held = periodic_axes(c.domain)[2] ? std::vector<HeldLayer>{} : held_layers(c);
-  if (solids || !obstacles.spheres.empty() || !held.empty()) return settled_height(c, obstacles, solids, held);
+  if (solids || !held.obstacles.spheres.empty() || !held.layers.empty()) return settled_height(c, held, solids);
   const double width = c.disks ? c.disks->thickness : c.domain.size.y();
   return volume_in_the_bed(c) / (settled_fraction(c) * c.domain.size.x() * width);
 }

@@ -8,6 +8,7 @@
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/estimate/settling.hpp"
 #include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>

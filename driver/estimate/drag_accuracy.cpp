@@ -2,6 +2,7 @@
 
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/settling.hpp"
 
 #include <fmt/format.h>
 

@@ -2,6 +2,7 @@
 
 #include "driver/case/limit_text.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/channel.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"

@@ -1,11 +1,12 @@
 #include "driver/estimate/flow_estimate.hpp"
 
-#include "beds/packing/packing.hpp"
-#include "core/geometry/hydraulic_radius.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/laminar_channel.hpp"
+#include "driver/estimate/channel.hpp"
+#include "driver/estimate/flow_drive.hpp"
 #include "driver/estimate/obstacles.hpp"
+#include "driver/estimate/pore_speed.hpp"
+#include "driver/estimate/settling.hpp"
 #include "driver/estimate/supplied_grains.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
@@ -27,57 +28,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 // Transition: of U R/nu, and of Couette flow V H/nu (Tillmark and Alfredsson 1992: 360 with half of both).
 constexpr double channel_transition = 500.0, couette_transition = 1440.0;
 constexpr double turnovers_to_adapt = 10.0, response_times_to_settle = 9.5;
-
-struct Channel {
-  double depth;       // m, H
-  double reach;       // m, h: of one surface; infinite where neither floor nor top holds the flow
-  double half_width;  // m, to the middle between two side walls, the whole width beside one; infinite without
-  double roughness;   // m, z_0 over grains; 0: a bare floor
-  double viscosity;   // m^2/s
-  double radius;      // m, of the share that the bed has: h, or the hydraulic radius between side walls
-
-  // Length in the log law: the reach; the half-width without floor and top; the depth without any wall.
-  double distance() const { return std::isfinite(reach) ? reach : std::isfinite(half_width) ? half_width : depth; }
-  // The laminar flow; without any wall, that of a film.
-  LaminarChannel laminar(double acceleration) const {
-    return laminar_channel(acceleration, is_held() ? reach : depth, half_width, viscosity);
-  }
-  bool is_held() const { return std::isfinite(reach) || std::isfinite(half_width); }
-};
-
-// True where held grains leave no room above them.
-bool held_grains_fill(const Case& c) {
-  if (c.grains.empty() || has_free_grains(c)) return false;
-  return periodic_axes(c.domain)[2] || c.domain.size.z() - settled_height(c) < largest_size(c);
-}
-
-Channel channel_of(const Case& c) {
-  const double width = c.domain.size.y();
-  const int walls = side_walls(c);
-  const double bed = settled_height(c);
-  const bool floor = c.domain.faces[bottom].drags() || (bed > 0.0 && !periodic_axes(c.domain)[2]);
-  const int surfaces = floor + c.domain.faces[top].drags();
-  Channel channel{};
-  channel.depth = c.domain.size.z() - bed;
-  // Between floor and top the water among them flows, as deep as it would be alone.
-  if (held_grains_fill(c) && !periodic_axes(c.domain)[2])
-    channel.depth = c.domain.size.z() - solid_volume(c) / (c.domain.size.x() * width);
-  channel.reach = surfaces == 0 ? infinite : channel.depth / surfaces;
-  channel.half_width = walls == 0 ? infinite : width / walls;
-  channel.roughness = largest_size(c) / roughness_a_diameter;
-  channel.viscosity = c.fluid.kinematic_viscosity;
-  channel.radius = surfaces > 0 ? thalweg::hydraulic_radius(channel.reach, width, walls)
-                   : walls > 0  ? width / walls
-                                : channel.depth;
-  return channel;
-}
-
-// ln(distance/z_0), at least 1 so that a flow as deep as its roughness has a velocity.
-double log_of(double distance, double friction_velocity, const Channel& channel) {
-  const double zero =
-      channel.roughness > 0.0 ? channel.roughness : smooth_roughness(channel.viscosity, friction_velocity);
-  return std::max(1.0, std::log(distance / zero));
-}
 
 // The friction velocity u_tau = kappa velocity/logarithms(u_tau), by iteration from a twentieth of the velocity.
 template <typename Law>
@@ -141,55 +91,14 @@ TurbulentFlow turbulent_flow(const Case& c, const Channel& channel, double along
   const double between = holds_back(c.domain.faces[y_low]) && holds_back(c.domain.faces[y_high])
                              ? velocity_between_side_walls(of_walls, channel)
                              : infinite;
-  const double over_bed = of_bed / karman_constant * log_of(channel.distance(), of_bed, channel);
+  const double over_bed = of_bed / karman_constant * channel.log_of(channel.distance(), of_bed);
   const double largest = std::min(over_bed, between), friction_velocity = between < over_bed ? of_walls : of_bed;
   return {largest, std::max(0.5 * largest, largest - friction_velocity / karman_constant)};
 }
 
-// m/s^2, of gravity along the bed, as far as it drives a flow: walls carry what goes across them, an inlet sets how
-// much flows whatever the slope, as does a mean velocity along x, and balanced gravity drives nothing.
-Vec3 driving_gravity(const Case& c) {
-  Vec3 driving = Vec3::Zero();
-  if (c.gravity.mode == GravityMode::balanced) return driving;
-  const Vec3 gravity = gravity_vector(c.gravity);
-  for (const int axis : {0, 1})
-    if (drives_flow(c, axis) && !inlet_sets_flow(c, axis)) driving[axis] = gravity[axis];
-  if (c.fluid.mean_velocity) driving.x() = 0.0;
-  return driving;
-}
-
-bool has_outlets(const Case& c, int axis) {
-  const auto low = static_cast<std::size_t>(2 * axis);
-  return c.domain.faces[low].type == lbm::FaceType::pressure_outlet &&
-         c.domain.faces[low + 1].type == lbm::FaceType::pressure_outlet;
-}
-
-// m/s^2, of different pressures of two outlets opposite each other.
-Vec3 driving_pressure(const Case& c) {
-  Vec3 driving = Vec3::Zero();
-  for (const int axis : {0, 1}) {
-    const auto low = static_cast<std::size_t>(2 * axis);
-    if (has_outlets(c, axis))
-      driving[axis] =
-          (c.domain.faces[low].pressure - c.domain.faces[low + 1].pressure) / (c.fluid.density * c.domain.size[axis]);
-  }
-  return driving;
-}
-
-Vec3 driving_acceleration(const Case& c) { return driving_gravity(c) + driving_pressure(c); }
-
 double acceleration_along(const Case& c) {
   const Vec3 driving = driving_acceleration(c);
   return std::hypot(driving.x(), driving.y());
-}
-
-// m/s, that fluid gains which enters at an outlet from rest (Bernoulli); infinite where it passes a periodic face.
-double speed_through_outlets(const Case& c) {
-  const Vec3 driving = driving_acceleration(c);
-  double head = 0.0;  // m^2/s^2
-  for (const int axis : {0, 1})
-    if (driving[axis] != 0.0) head += has_outlets(c, axis) ? std::abs(driving[axis]) * c.domain.size[axis] : infinite;
-  return std::sqrt(2.0 * head);
 }
 
 struct SlopeFlow {
@@ -251,7 +160,7 @@ FlowEstimate flow_of_discharge(double mean, FlowCause drive, const Channel& chan
     return flow;
   }
   flow.friction_velocity = friction_velocity_of(mean, [&](double friction_velocity) {
-    return std::max(1.0, log_of(channel.distance(), friction_velocity, channel) - 1.0);
+    return std::max(1.0, channel.log_of(channel.distance(), friction_velocity) - 1.0);
   });
   flow.speed = mean + flow.friction_velocity / karman_constant;
   return flow;
@@ -298,7 +207,7 @@ FlowEstimate flow_of_moving_top(const Case& c, const Channel& channel) {
     return flow;
   }
   flow.friction_velocity = friction_velocity_of(velocity, [&](double friction_velocity) {
-    return log_of(0.5 * depth, friction_velocity, channel) +
+    return channel.log_of(0.5 * depth, friction_velocity) +
            std::max(1.0, std::log(0.5 * smooth_wall_number * friction_velocity * depth / channel.viscosity));
   });
   flow.spin_up = velocity * depth / (flow.friction_velocity * flow.friction_velocity);
@@ -328,39 +237,6 @@ void consider_faces(const Case& c, const Channel& channel, FlowEstimate& flow) {
   }
 }
 
-// The narrowest section between spheres of this solid fraction, on a cubic lattice, over the whole section.
-double narrowest_section(double solid_fraction) {
-  constexpr double apart = 0.2;  // single grains make no pores
-  if (solid_fraction < apart) return 1.0;
-  const double fraction = std::min(solid_fraction, beds::densest_bed);
-  return 1.0 - std::numbers::pi / 4.0 * std::pow(6.0 * fraction / std::numbers::pi, 2.0 / 3.0);
-}
-
-// Solid fraction of the densest bed that fluid which enters at bottom or top has to pass.
-double densest_bed_of(const Case& c) {
-  double fraction = 0.0;
-  for (const beds::Population& grains : c.grains) {
-    const beds::RegionKeys room = region_of(c, grains);
-    if (grains.held()) fraction = std::max(fraction, grains.volume() / (room.upper - room.lower).prod());
-  }
-  return settled_height(c) > 0.0 && has_free_grains(c) ? std::max(fraction, settled_fraction(c)) : fraction;
-}
-
-// What a mean velocity or an inlet drives through the pores of a bed.
-void consider_pores(const Case& c, FlowEstimate& flow) {
-  const bool filled = held_grains_fill(c);
-  const double fraction = filled ? solid_volume(c) / c.domain.size.prod() : 0.0;
-  if (filled && c.fluid.mean_velocity)  // the mean over the water
-    consider(flow, std::abs(c.fluid.mean_velocity->velocity) * (1.0 - fraction) / narrowest_section(fraction),
-             FlowCause::mean_velocity);
-  for (std::size_t face = 0; face < c.domain.faces.size(); ++face) {
-    const coupling::FaceKeys& keys = c.domain.faces[face];
-    if (keys.type != lbm::FaceType::velocity_inlet) continue;
-    const double passed = face < bottom ? fraction : densest_bed_of(c);
-    consider(flow, std::abs(keys.velocity[static_cast<int>(face / 2)]) / narrowest_section(passed), FlowCause::inlet);
-  }
-}
-
 // m/s, the largest that a grain of a rigid population can have anywhere in its region or the box.
 double rigid_speed(const Case& c, const beds::Population& grains) {
   const dem::PrescribedMotion motion = prescribed_motion(*grains.motion);
@@ -372,26 +248,6 @@ double rigid_speed(const Case& c, const beds::Population& grains) {
   double distance = 0.0;
   for (const Vec3& place : places) distance = std::max(distance, motion.axis.cross(place - motion.centre).norm());
   return motion.largest_speed(distance + 0.5 * grains.largest_diameter());
-}
-
-// m/s, of the largest grain of a population.
-double settling_velocity_of(const Case& c, const beds::Population& grains) {
-  return settling_velocity(largest_size(grains), grains.density / c.fluid.density, gravity_vector(c.gravity).norm(),
-                           c.fluid.kinematic_viscosity);
-}
-
-// m/s, of the same grain, which falls from rest, and no farther than from one face of the box to another: at most the
-// root of 2 g |1 - rho_f/rho_s| times that, without drag and added mass.
-double falling_speed_of(const Case& c, const beds::Population& grains) {
-  const double terminal = settling_velocity_of(c, grains);
-  const Vec3 gravity = gravity_vector(c.gravity);
-  double farthest = infinite;  // m
-  for (const int axis : {0, 1, 2})
-    if (!periodic_axes(c.domain)[static_cast<std::size_t>(axis)] && gravity[axis] != 0.0)
-      farthest = std::min(farthest, c.domain.size[axis] * gravity.norm() / std::abs(gravity[axis]));
-  if (!(terminal > 0.0) || !std::isfinite(farthest)) return terminal;
-  return std::min(terminal,
-                  std::sqrt(2.0 * gravity.norm() * std::abs(1.0 - c.fluid.density / grains.density) * farthest));
 }
 
 bool starts_from_a_bed(const Case& c, const beds::Population& grains) {
@@ -426,38 +282,6 @@ const char* words_of(FlowCause cause) {
   return "";
 }
 
-double settling_velocity(double diameter, double density_ratio, double gravity, double viscosity) {
-  const double weight = std::abs(density_ratio - 1.0) * gravity * diameter;  // 3/4 C_D v^2
-  if (!(weight > 0.0)) return 0.0;
-  const auto resistance = [&](double velocity) {
-    const double reynolds = velocity * diameter / viscosity;
-    const double drag = reynolds < 1000.0 ? 24.0 / reynolds * (1.0 + 0.15 * std::pow(reynolds, 0.687)) : 0.44;
-    return 0.75 * drag * velocity * velocity;
-  };
-  double low = 0.0, high = std::sqrt(weight / (0.75 * 0.3)) + weight * diameter / (18.0 * viscosity);
-  for (int n = 0; n < 100; ++n) {
-    const double middle = 0.5 * (low + high);
-    (resistance(middle) < weight ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-double settling_velocity(const Case& c) {
-  double fastest = 0.0;
-  if (!has_fluid(c)) return fastest;
-  for (const beds::Population& grains : c.grains)
-    if (!grains.held()) fastest = std::max(fastest, settling_velocity_of(c, grains));
-  return fastest;
-}
-
-double falling_speed(const Case& c) {
-  double fastest = 0.0;
-  if (!has_fluid(c)) return fastest;
-  for (const beds::Population& grains : c.grains)
-    if (!grains.held()) fastest = std::max(fastest, falling_speed_of(c, grains));
-  return fastest;
-}
-
 double given_speed(const Case& c, const beds::Population& grains) {
   if (grains.motion) return rigid_speed(c, grains);
   if (grains.fixed) return 0.0;
@@ -471,15 +295,6 @@ double estimated_velocity(const Case& c) {
   const Channel channel = channel_of(c);
   const double along = acceleration_along(c);
   return along == 0.0 || channel.depth <= 0.0 ? 0.0 : developed_flow(c, channel, along).speed;
-}
-
-const coupling::FaceKeys* inlet_of(const Case& c) {
-  const auto comes_in = [&](FaceIndex face, double inwards) {
-    const coupling::FaceKeys& keys = c.domain.faces[face];
-    return keys.type == lbm::FaceType::velocity_inlet && inwards * keys.velocity.x() > 0.0;
-  };
-  if (comes_in(x_low, 1.0)) return &c.domain.faces[x_low];
-  return comes_in(x_high, -1.0) ? &c.domain.faces[x_high] : nullptr;
 }
 
 FlowEstimate flow_estimate(const Case& c) {
@@ -501,12 +316,12 @@ FlowEstimate flow_estimate(const Case& c) {
     consider(flow, estimated_velocity(c), cause_along(c));
   }
   consider_faces(c, channel, flow);
-  consider_pores(c, flow);
+  consider(flow, pore_speed_of_mean_velocity(c), FlowCause::mean_velocity);
+  consider(flow, pore_speed_of_inlets(c), FlowCause::inlet);
   consider_start(c, flow);
   for (const beds::Population& grains : c.grains) {
     consider(flow, given_speed(c, grains), FlowCause::moving_grains);
-    if (!grains.held() && !starts_from_a_bed(c, grains))
-      consider(flow, falling_speed_of(c, grains), FlowCause::settling);
+    if (!grains.held() && !starts_from_a_bed(c, grains)) consider(flow, falling_speed(c, grains), FlowCause::settling);
   }
   consider(flow, fastest_supply(c), FlowCause::moving_grains);
   for (const SolidCase& solid : c.solids) consider(flow, largest_speed(solid), FlowCause::moving_solids);

@@ -1,8 +1,7 @@
 // Speed that the fluid of a case reaches, its cause, and the time it takes: estimates from the case alone, for
 // `thalweg check` and its warnings.
 //
-// A flow along the bed has the depth H from the settled bed to the top. Where the top drags it, each of the two
-// surfaces has half of it: h = H/2, else h = H; R is the hydraulic radius, from h and the side walls. A flow is laminar
+// A flow along the bed has the depth H, each of its surfaces h, and the hydraulic radius R (channel.hpp). It is laminar
 // below U R/nu = 500, that is 2000 with the hydraulic diameter 4 R.
 //
 //   slope           laminar: u_max and U of the channel of h and the width (laminar_channel.hpp)
@@ -18,12 +17,9 @@
 //   moving top      u_max = V, U = V/2; laminar (V H/nu < 1440): u_tau^2 = nu V/H
 //                   turbulent, log laws that meet half-way: V = (u_tau/kappa) [ln(H/(2 z_0)) + ln(9 u_tau H/(2 nu))]
 //
-// Through the pores of held grains that fill the box, and of a bed above or below an inlet at bottom or top, at least
-// the speed in the narrowest section between spheres of the same solid fraction phi on a cubic lattice, 1 - pi/4 (6
-// phi/pi)^(2/3) of the whole.
-//
-// z_0: d/15 over grains (equivalent roughness of two diameters), nu/(9 u_tau) over a bare floor. Gravity drives no flow
-// across walls, and none along an axis where an inlet or a mean velocity sets how much flows.
+// Gravity drives no flow across walls, and none along an axis where an inlet or a mean velocity sets how much flows
+// (flow_drive.hpp). The speed is at least that in the pores of a bed which the flow passes (pore_speed.hpp), of single
+// grains that fall (settling.hpp), of moving faces, of the start, and of grains and solids whose motion is given.
 //
 // Time from rest to 95 %: twice the water's momentum over the force, 2 U/g_x under a slope (from dU/dt = g_x (1 -
 // U^2/U_end^2)) and 2 U H/u_tau^2 under a moving top; laminar, by the slowest mode, that of the channel, and
@@ -35,14 +31,6 @@
 #include "driver/case/case.hpp"
 
 namespace thalweg::driver {
-
-inline constexpr double roughness_a_diameter = 15.0;  // d/z_0
-inline constexpr double smooth_wall_number = 9.0;     // nu/(u_tau z_0) of a bare floor or wall
-
-// z_0 (m) of a bare floor: nu/(9 u_tau), of m^2/s and m/s.
-constexpr double smooth_roughness(double viscosity, double friction_velocity) {
-  return viscosity / (smooth_wall_number * friction_velocity);
-}
 
 enum class FlowCause {
   none,
@@ -59,9 +47,6 @@ enum class FlowCause {
 
 // "slope and depth", ...
 const char* words_of(FlowCause cause);
-
-// The face across x where the water comes in; null: there is none.
-const coupling::FaceKeys* inlet_of(const Case& c);
 
 struct FlowEstimate {
   double speed = 0.0;                 // m/s, of the fastest fluid; 0: nothing moves it
@@ -89,15 +74,5 @@ double given_speed(const Case& c, const beds::Population& grains);
 // The speed (m/s) that a flow driven along the bed by gravity or outlets can reach, whatever the time of the run. An
 // upper estimate, for warnings. 0 without a fluid or such a drive.
 double estimated_velocity(const Case& c);
-
-// m/s, of one sphere in fluid at rest: weight less buoyancy against the drag of Schiller and Naumann (1933), with a
-// drag coefficient of 0.44 above a Reynolds number of 1000. gravity: m/s^2; viscosity: m^2/s. 0 for density ratio 1.
-double settling_velocity(double diameter, double density_ratio, double gravity, double viscosity);
-
-// m/s, of the fastest single grain free to move in the fluid at rest; 0 without any.
-double settling_velocity(const Case& c);
-
-// m/s, the same where the box is too low for that: at most what a fall through it gives without drag.
-double falling_speed(const Case& c);
 
 }  // namespace thalweg::driver

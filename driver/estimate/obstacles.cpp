@@ -155,29 +155,24 @@ std::vector<double> kept_volume_below(const std::vector<TriangleMesh>& surfaces,
 
 }  // namespace
 
-Obstacles obstacles_of(const Case& c) {
-  Obstacles found;
+HeldGrains held_grains_of(const Case& c) {
+  HeldGrains found;
   if (c.disks) return found;
   for (const HeldGrain& grain : held_with_positions(c)) {
-    if (!grain.stands) continue;
-    found.volume_of_grains += grain.volume;
-    found.spheres.insert(found.spheres.end(), grain.spheres.begin(), grain.spheres.end());
+    if (grain.stands) {
+      found.obstacles.volume_of_grains += grain.volume;
+      found.obstacles.spheres.insert(found.obstacles.spheres.end(), grain.spheres.begin(), grain.spheres.end());
+    } else {
+      const double diameter = std::cbrt(6.0 / std::numbers::pi * grain.volume);
+      found.layers.push_back({grain.height - 0.5 * diameter, grain.height + 0.5 * diameter, diameter, grain.volume});
+    }
   }
+  for (const beds::Population& population : c.grains)
+    if (population.held() && population.placement.positions.empty()) found.layers.push_back(layer_of(c, population));
   return found;
 }
 
-std::vector<HeldLayer> held_layers(const Case& c) {
-  std::vector<HeldLayer> found;
-  if (c.disks) return found;
-  for (const HeldGrain& grain : held_with_positions(c)) {
-    if (grain.stands) continue;
-    const double diameter = std::cbrt(6.0 / std::numbers::pi * grain.volume);
-    found.push_back({grain.height - 0.5 * diameter, grain.height + 0.5 * diameter, diameter, grain.volume});
-  }
-  for (const beds::Population& population : c.grains)
-    if (population.held() && population.placement.positions.empty()) found.push_back(layer_of(c, population));
-  return found;
-}
+Obstacles obstacles_of(const Case& c) { return held_grains_of(c).obstacles; }
 
 std::vector<double> held_below(const Case& c, const std::vector<HeldLayer>& held, int layers) {
   std::vector<double> below(static_cast<std::size_t>(layers) + 1, 0.0);

@@ -29,9 +29,14 @@ struct HeldLayer {
   double volume;        // m^3, of all of them
 };
 
-// The held grains that are no obstacles, at the start: each that has a position, and the others as their populations
-// are spread over a region or, from a file, over the heights that have the same mean and deviation. Without disks.
-std::vector<HeldLayer> held_layers(const Case& c);
+// What a case holds at the start; of disks none. The layers are of the grains that are no obstacles: each that has a
+// position, and the others as their populations are spread over a region or, from a file, over the heights that have
+// the same mean and deviation.
+struct HeldGrains {
+  Obstacles obstacles;
+  std::vector<HeldLayer> layers;
+};
+HeldGrains held_grains_of(const Case& c);
 
 // Their volume (m^3) below layers + 1 heights from the floor of the box to its top: of each layer that of as many
 // sheets of spheres as it is diameters high, at least one.

@@ -5,6 +5,7 @@
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/estimate/settling.hpp"
 
 #include <fmt/format.h>
 

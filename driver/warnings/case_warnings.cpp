@@ -7,6 +7,7 @@
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/settling.hpp"
 #include "driver/estimate/stability.hpp"
 #include "driver/input/run_context.hpp"
 #include "driver/warnings/boundary_warnings.hpp"

@@ -1,6 +1,7 @@
 #include "driver/estimate/drag_accuracy.hpp"
 
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/settling.hpp"
 #include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 

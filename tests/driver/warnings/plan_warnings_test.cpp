@@ -2,6 +2,7 @@
 
 #include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_estimate.hpp"
+#include "driver/estimate/settling.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/text_search.hpp"
