@@ -1,4 +1,4 @@
-// A case that tests of the report share.
+// Cases that tests share.
 #pragma once
 
 #include "driver/case/case.hpp"
@@ -31,6 +31,22 @@ inline Case water_over_glass(double d, double slope, double depth, double width,
   c.domain.faces[top].type = lbm::FaceType::free_slip;
   c.contact.restitution = 0.93;
   c.run.until = 30.0;
+  return c;
+}
+
+// Holds its grains where a settled bed has them.
+inline void hold_bed(Case& c, double depth) {
+  c.grains[0].fixed = true;
+  c.grains[0].placement.region =
+      beds::RegionKeys{Vec3::Zero(), Vec3(c.domain.size.x(), c.domain.size.y(), c.domain.size.z() - depth)};
+}
+
+// The case without its grains, and of another viscosity (m^2/s): a film 0.02 m deep over a bare floor.
+inline Case film(double viscosity) {
+  Case c = water_over_glass(5e-3, 0.016, 0.0412, 0.040, lbm::FaceType::periodic);
+  c.grains.clear();
+  c.domain.size.z() = 0.02;
+  c.fluid.kinematic_viscosity = viscosity;
   return c;
 }
 

@@ -134,5 +134,49 @@ TEST(Overlaps, OfGrainsThatAreMet) {
   EXPECT_NEAR(expected_overlaps(struck).speed, 6.0, 1e-12);
 }
 
+// A column of grains under water, by hand: shear stress rho_f g_x H + (rho_f + 0.6 excess) g_x h.
+TEST(SlidingBed, IsThatOfTheStressesAtItsBase) {
+  Case c = bed();
+  const double height = c.domain.size.z() - depth, sine = std::sin(std::atan(0.016)),
+               cosine = std::cos(std::atan(0.016));
+  const double shear = (1000.0 * depth + (1000.0 + 0.6 * 1550.0) * height) * sine;
+  EXPECT_NEAR(stress_ratio_at_base(c), shear / (0.6 * 1550.0 * height * cosine), 1e-12);
+  Case lid = c;
+  lid.domain.faces[top].type = lbm::FaceType::no_slip;  // holds half of the water
+  EXPECT_NEAR(stress_ratio_at_base(lid), (shear - 500.0 * depth * sine) / (0.6 * 1550.0 * height * cosine), 1e-12);
+  c.contact.friction = 0.5;
+  EXPECT_FALSE(any_contains(warnings(c), "slides as a whole"));
+  c.gravity.slope = 0.2;
+  EXPECT_TRUE(any_contains(warnings(c), "slides as a whole"));
+  c.system = SystemKind::grains;
+  EXPECT_NEAR(stress_ratio_at_base(c), 0.2, 1e-12);  // dry: the tangent
+  EXPECT_EQ(bulk_friction(0.5), 0.382);
+  EXPECT_NEAR(bulk_friction(0.2), 0.5 * (0.268 + 0.357), 1e-12);
+  EXPECT_EQ(bulk_friction(50.0), 0.405);
+}
+
+// Chialvo, Sun and Sundaresan (2012) have spheres without rolling friction or cohesion; what is held does not slide.
+TEST(SlidingBed, IsNotThatOfGrainsWhichHoldMore) {
+  const auto warned = [](const Case& c) { return any_contains(warnings(c), "slides as a whole"); };
+  Case c = bed();
+  c.gravity.slope = 0.3;
+  c.contact.friction = 0.5;
+  ASSERT_TRUE(warned(c));
+  Case held = c, rolling = c, own = c, wet = c;
+  held.grains.front().fixed = true;
+  EXPECT_FALSE(warned(held));
+  EXPECT_EQ(stress_ratio_at_base(held), 0.0);
+  rolling.contact.rolling_friction = 0.3;
+  EXPECT_FALSE(warned(rolling));
+  EXPECT_EQ(stress_ratio_at_base(rolling), stress_ratio_at_base(c));
+  own.grains.front().contact.emplace().rolling_friction = 0.3;
+  EXPECT_FALSE(warned(own));
+  own.contact.rolling_friction = 0.3;  // of walls and of no grain
+  own.grains.front().contact->rolling_friction = 0.0;
+  EXPECT_TRUE(warned(own));
+  wet.contact.liquid_bridge.emplace();
+  EXPECT_FALSE(only_friction_holds_the_bed(wet));
+}
+
 }  // namespace
 }  // namespace thalweg::driver::contact_estimate_test

@@ -6,15 +6,21 @@
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/driver/text_search.hpp"
+#include "tests/driver/water_over_glass.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace thalweg::driver::plan_warnings_test {
 namespace {
+
+constexpr double d = 5e-3, depth = 0.0412;
+
+Case bed(double slope = 0.016) { return water_over_glass(d, slope, depth, 0.040, lbm::FaceType::periodic); }
 
 // A bed under water so viscous that it flows laminarly, over `more` keys.
 Case viscous(const std::vector<std::string>& more) {
@@ -90,6 +96,94 @@ TEST(PlanWarnings, KnowThatGrainsHinderEachOther) {
   EXPECT_GT(time, 2.0 * fall / speed);
   EXPECT_TRUE(any_contains(warnings(until(0.95 * time)), "The highest grains fall for about"));
   EXPECT_FALSE(any_contains(warnings(until(1.05 * time)), "The highest grains fall for about"));
+}
+
+TEST(Warnings, OfLaminarFlowWithSmagorinskysModel) {
+  Case c = film(1e-3);
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr and fluid.smagorinsky_constant: null"));
+  c.fluid.smagorinsky_constant.reset();  // the default vanishes in shear
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+  c.fluid.subgrid_model = lbm::SubgridModel::smagorinsky;
+  EXPECT_TRUE(any_contains(warnings(c), "consider fluid.subgrid_model: qr."));
+  c.fluid.subgrid_model = lbm::SubgridModel::none;
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+  c = bed();
+  c.fluid.smagorinsky_constant = 0.27;
+  EXPECT_FALSE(any_contains(warnings(c), "The flow is laminar"));
+}
+
+TEST(Warnings, OfRelaxationTimesBelowTheMap) {
+  Case c = bed();
+  EXPECT_FALSE(any_contains(warnings(c), "has not been tested below"));  // 2.4e-4
+  c.fluid.time_step = 0.9 * 1e-4 * 2.5e-7 / 3e-6;                        // 0.9e-4
+  EXPECT_TRUE(any_contains(warnings(c), "has not been tested below"));
+}
+
+TEST(Warnings, OfThePlan) {
+  Case c = bed();
+  c.domain.size.z() = 0.064;            // a whole number of cells
+  c.contact.normal_stiffness = 2700.0;  // as long as sound takes around a grain
+  c.run.until = 30.0;
+  EXPECT_TRUE(warnings(c).empty());
+  c.run.until = 1.0;  // of 9 s
+  EXPECT_TRUE(any_contains(warnings(c), "from rest"));
+  EXPECT_TRUE(any_contains(warnings(c), "initial.fluid.log_profile: {}"));
+  c.initial.fluid.log_profile = coupling::LogProfileKeys{0.06, 0.080, 2e-4, std::nullopt};
+  EXPECT_TRUE(warnings(c).empty());
+  c.initial.fluid.log_profile->shear_velocity = 0.040;
+  c.run.until = 30.0;
+  EXPECT_TRUE(any_contains(warnings(c), "shear_velocity: 0.08"));
+  c.run.until = 0.4;  // H/u_tau = 0.51 s
+  EXPECT_TRUE(any_contains(warnings(c), "one turnover"));
+  EXPECT_FALSE(any_contains(warnings(c), "developed"));  // it is
+}
+
+// The finest grains of a population, not those of its median, are the last that come down.
+TEST(Warnings, OfGrainsThatStillFall) {
+  Case c = bed(0.0);
+  c.run.until = 0.2;  // 0.04 m at 0.48 m/s take 0.09 s
+  EXPECT_FALSE(any_contains(warnings(c), "The highest grains fall"));
+  beds::Population& grains = c.grains.front();
+  grains.diameters.assign(static_cast<std::size_t>(grains.count), d);
+  std::fill_n(grains.diameters.begin(), grains.count / 2, 0.05 * d);  // 0.035 m/s
+  EXPECT_TRUE(any_contains(warnings(c), "The highest grains fall"));
+}
+
+// Beside grains that make a bed, those that float have no Shields number; alone they leave none to the case.
+TEST(Warnings, OfGrainsThatFloat) {
+  Case c = bed();
+  beds::Population light = c.grains.front();
+  light.density = 900.0;
+  c.grains.push_back(light);
+  EXPECT_TRUE(any_contains(warnings(c), "(grains.1) are no heavier than the fluid of 1000 kg/m^3: they are no part"));
+  EXPECT_FALSE(any_contains(warnings(c), "there is no Shields number"));
+  c.grains.erase(c.grains.begin());
+  EXPECT_TRUE(any_contains(warnings(c), "there is no Shields number"));
+}
+
+TEST(Warnings, OfSuppliesThatBeginTooLate) {
+  Case c = bed();
+  beds::SupplyKeys& supply = c.supplies.emplace_back();
+  supply.rate = 10.0;
+  supply.from = 0.5 * c.run.until;
+  EXPECT_FALSE(any_contains(warnings(c), "supplies.0"));
+  supply.from = c.run.until;
+  EXPECT_TRUE(any_contains(warnings(c), "give an earlier supplies.0.from"));
+}
+
+TEST(Warnings, OfWaterAtRestThatAnInletSetsGoing) {
+  Case c = bed(0.0);
+  c.domain.faces[x_low] = {.type = lbm::FaceType::velocity_inlet, .velocity = Vec3(0.2, 0.0, 0.0)};
+  c.domain.faces[x_high].type = lbm::FaceType::pressure_outlet;
+  EXPECT_TRUE(any_contains(warnings(c), "starts at rest and the inlet accelerates it to 0.2 m/s"));
+  c.initial.fluid.uniform = Vec3(0.2, 0.0, 0.0);
+  EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
+  c.initial.fluid.uniform.reset();
+  hold_bed(c, depth);  // nothing to throw about, and a pressure of rho c_s u: 1.4 %, and at 0.8 m/s 5.5 %
+  EXPECT_FALSE(any_contains(warnings(c), "starts at rest"));
+  c.domain.faces[x_low].velocity.x() = 0.8;
+  EXPECT_TRUE(any_contains(warnings(c), "compresses it by 5.5 %"));
 }
 
 }  // namespace
