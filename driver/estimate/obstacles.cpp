@@ -99,7 +99,7 @@ std::vector<HeldGrain> held_with_positions(const Case& c) {
   mark_merged(grain_box(c), grains);
   const double longest = longest_free_grain(c);
   for (HeldGrain& grain : grains)
-    if (longest > 0.0 && grain.extent >= as_long_again * longest) grain.stands = true;
+    if (longest > 0.0 && grain.extent >= (1.0 - whole_number_tolerance) * as_long_again * longest) grain.stands = true;
   return grains;
 }
 

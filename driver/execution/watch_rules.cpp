@@ -229,22 +229,29 @@ std::string change_of_contacts(const Case& c, Contacts to) {
 void add_grain_rules(const Case& c, std::vector<WatchRule>& rules) {
   using Side = WatchRule::Side;
   const double expected = expected_grain_speed(c);
-  const double unit = has_fluid(c) ? units_of(c).velocity() : never;
   rules.push_back(
       {"largest_grain_speed", Side::above,
-       [expected, unit, taken = 0.0,
+       [expected, taken = 0.0,
         unknown = c.initial.takes(InitialField::grains)](const std::vector<Diagnostic>& diagnostics) mutable {
          // Grains of another run bring their speeds along, which show when the rule is first asked.
          if (std::exchange(unknown, false)) taken = find_diagnostic(diagnostics, "largest_grain_speed").value_or(0.0);
          const double speed = expected + taken + find_diagnostic(diagnostics, "largest_fluid_speed").value_or(0.0);
-         const double stop = std::min(impossible_speed * speed, broken_lattice_velocity * unit);
-         return WatchLimits{std::min({suspicious_speed * speed, fast_lattice_velocity * unit, stop}), stop};
+         return WatchLimits{suspicious_speed * speed, impossible_speed * speed};
        },
        "the largest speed of a grain",
        fmt::format(
            "Neither the flow, nor free fall, nor what the case itself moves explains this speed; the contacts or "
            "the fluid load of the grain must cause it: check overlaps at the start, or shorten {} or {}.",
            has_fluid(c) ? "fluid.time_step" : "run.time_step", change_of_contacts(c, Contacts::softer))});
+  if (has_fluid(c)) {
+    const double unit = units_of(c).velocity();
+    rules.push_back({"largest_grain_speed", Side::above,
+                     always(fast_lattice_velocity * unit, broken_lattice_velocity * unit),
+                     "the largest speed of a grain",
+                     fmt::format("A grain that crosses more than {:g} cells a step is too fast for the flow around it: "
+                                 "shorten fluid.time_step.",
+                                 fast_lattice_velocity)});
+  }
   double allowed = 0.0;
   for (const beds::Population& grains : c.grains)
     if (grains.from_file())

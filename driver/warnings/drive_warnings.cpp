@@ -2,6 +2,7 @@
 
 #include "driver/case/axes.hpp"
 #include "driver/estimate/bed_flow.hpp"
+#include "driver/estimate/flow_drive.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/grain_weight.hpp"
 
@@ -97,6 +98,14 @@ void warn_of_uphill_flow(const Case& c, Sentences& found) {
                       : fmt::format("gravity.vector: [{:g}, {:g}, {:g}]", -gravity.x(), gravity.y(), gravity.z())));
 }
 
+void warn_of_flow_across(const Case& c, Sentences& found) {
+  const Vec3 driving = driving_gravity(c);
+  if (c.grains.empty() || std::abs(driving.y()) <= std::abs(driving.x())) return;
+  found.push_back(
+      "Gravity drives the flow along y, but transport rate, hydraulic radius, bed stress and Shields number are those "
+      "along x, which points downstream: turn the case.");
+}
+
 }  // namespace
 
 std::vector<std::string> drive_warnings(const Case& c) {
@@ -106,6 +115,7 @@ std::vector<std::string> drive_warnings(const Case& c) {
   if (!has_fluid(c)) return found;
   warn_of_closed_ends(c, found);
   warn_of_uphill_flow(c, found);
+  warn_of_flow_across(c, found);
   return found;
 }
 

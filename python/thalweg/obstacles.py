@@ -65,7 +65,7 @@ def obstacles(run, frame):
     free[fixed] = False
     free &= velocity_is_free(frame)
     if free.any():
-        stands[fixed] |= frame.radius[fixed] >= AS_LARGE_AGAIN * frame.radius[free].max()
+        stands[fixed] |= frame.radius[fixed] >= (1.0 - 1e-9) * AS_LARGE_AGAIN * frame.radius[free].max()
     return stands
 
 

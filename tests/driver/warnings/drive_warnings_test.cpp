@@ -107,7 +107,16 @@ TEST(DriveWarnings, OfAFlowUphill) {
   EXPECT_TRUE(contains(only_warning(c), "consider gravity.vector: [0.2, 0, -9.8].")) << only_warning(c);
 }
 
-// Two thirds glass and one third of 1500 kg/m^3, all of 5 mm: the mean density is 2200 kg/m^3, and at the same stress
-// the numbers are as 1/1550 to 1/1200 to 1/500.
+// All that is measured of a flow is measured along x.
+TEST(DriveWarnings, OfAFlowAcross) {
+  Case c = wide_bed();
+  c.gravity.magnitude.reset();
+  c.gravity.slope.reset();
+  c.gravity.vector = Vec3(0.1, 0.2, -9.8);
+  EXPECT_TRUE(contains(only_warning(c), "drives the flow along y")) << only_warning(c);
+  c.gravity.vector = Vec3(0.2, 0.1, -9.8);
+  EXPECT_EQ(only_warning(c), "");
+}
+
 }  // namespace
 }  // namespace thalweg::driver::drive_warnings_test
