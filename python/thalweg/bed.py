@@ -10,14 +10,22 @@ from thalweg.side_view import static_surface
 from thalweg.units import units_of
 
 
-def surface_by_solid_fraction(z, fraction):
-    """Height (m) at which the solid fraction falls to half of the bed's, between the middles z (m) of two layers. The
-    bed's is the median of the layers below the grains' centre of mass."""
-    z, fraction = np.asarray(z, float), np.asarray(fraction, float)
-    if not np.nansum(fraction) > 0.0:
+def surface_by_solid_fraction(z, fraction, window=0.0):
+    """Height (m) at which the solid fraction, a mean over `window` (m), falls to half of the bed's, between the middles
+    z (m) of two layers. The bed's is the mean between the heights below which 10 and 50 % of all grains lie, as in
+    `analysis.bed_surface`."""
+    z, fraction = np.asarray(z, float), np.nan_to_num(np.asarray(fraction, float))
+    if not np.sum(fraction) > 0.0:
         raise RunFolderError("these profiles hold no grains; nothing has been measured yet.")
-    inside = z <= (1.0 + 1e-9) * np.sum(fraction * z) / np.sum(fraction)   # a single layer is its own centre of mass
-    half = 0.5 * np.median(fraction[inside & (fraction > 0.0)])
+    between = 0.5 * (z[1:] + z[:-1])
+    edges = np.concatenate([[2.0 * z[0] - between[0]], between, [2.0 * z[-1] - between[-1]]])
+    below = np.concatenate([[0.0], np.cumsum(fraction * np.diff(edges))])
+    shares = np.array([0.1, 0.5]) * below[-1]
+    low, high = np.interp(shares, below, edges)
+    half = 0.5 * (shares[1] - shares[0]) / (high - low)
+    lower, upper = np.maximum(z - 0.5 * window, edges[0]), np.minimum(z + 0.5 * window, edges[-1])
+    if window > 0.0:
+        fraction = (np.interp(upper, edges, below) - np.interp(lower, edges, below)) / (upper - lower)
     last = np.flatnonzero(fraction >= half)[-1]
     if last + 1 == len(z):
         raise RunFolderError("the grains reach the top: there is no surface of a bed.")
@@ -41,10 +49,10 @@ def bed_height(run, start=-np.inf, stop=np.inf):
     if "grain_profiles" in run.profiles and not np.isfinite([start, stop]).any():
         if not more_than_the_bed(run):
             profiles = run.profiles["grain_profiles"]
-            return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+            return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"], run.diameter)
         start = run.averaged_from("grain_profiles")
     profiles = layer_profiles(run, start, stop, 0.25 * run.diameter, bed_only=True)
-    return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+    return surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"], run.diameter)
 
 
 def any_float(run):

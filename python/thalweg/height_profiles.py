@@ -177,7 +177,7 @@ def surface_or_floor(run, z, fraction):
         surface = (
             bed_height(run, run.averaged_from(observer_of_grains(run)))
             if more_than_the_bed(run)
-            else surface_by_solid_fraction(z, fraction)
+            else surface_by_solid_fraction(z, fraction, run.diameter)
         )
     except RunFolderError:
         return 0.0, "floor"

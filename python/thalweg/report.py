@@ -201,7 +201,7 @@ def describe_profiles(report):
     report.profiles["layers"] = profiles
     if report.run.case.get("fluid"):
         profiles = layer_profiles(*part, bed_only=True) if bed.any_float(report.run) else profiles
-        surface = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"])
+        surface = bed.surface_by_solid_fraction(profiles["z"], profiles["solid_fraction"], report.run.diameter)
         describe_surface(report, "surface_by_solid_fraction", "surface", surface)
         report.attempt("water", lambda: describe_water(report, surface))
 

@@ -55,7 +55,7 @@ def resolved_bed(run):
     of_fluid = sum(component(layers, name, "xz") for name in ("viscous_stress", "subgrid_stress", "reynolds_stress"))
     of_water = layers["fluid_velocity"][:, 0]
     axis, way = ("-x", -1.0) if np.nansum((1.0 - phi) * of_water) < 0.0 else ("x", 1.0)
-    return Bed(axis, (z - surface_by_solid_fraction(z, phi)) / diameter, phi, way * velocity, way * of_water,
+    return Bed(axis, (z - surface_by_solid_fraction(z, phi, diameter)) / diameter, phi, way * velocity, way * of_water,
                layers["granular_temperature"], way * stress[:, 0, 2], way * of_fluid, state, layers["drag_function"],
                layers["drag_reynolds_number"])
 
@@ -104,7 +104,7 @@ def draw_profiles(axes, bed, column):
     stress.plot(bed.fluid_stress, bed.height, color=FLUID, label="fluid")
     if column is not None:
         of = column.profiles["continuum"]
-        height = (of["z"] - surface_by_solid_fraction(of["z"], of["solid_fraction"])) / column.diameter
+        height = (of["z"] - surface_by_solid_fraction(of["z"], of["solid_fraction"], column.diameter)) / column.diameter
         fraction.plot(of["solid_fraction"], height, "k--")
         velocity.plot(of["fluid_velocity"][:, 0], height, "--", color=FLUID)
         velocity.plot(of["grain_velocity"][:, 0], height, "--", color=GRAINS)

@@ -127,10 +127,13 @@ class Layers(made_up.MadeUpFolder):
                 bed.surface_by_solid_fraction(D * np.arange(5), np.full(5, nothing))
 
     def test_the_surface_lies_between_two_layers(self):
-        # The centre of mass is at 2.76, below it the median is 0.6: 0.3 is half-way from 0.45 at 4.5 to 0.15 at 5.5. Of
-        # all layers with grains, those that fly included, the median is 0.3.
+        # Of 3.08, a tenth lies below 0.616 and half below 2 + 0.44/0.7: the bed has 1.232 in that height.
         fraction = [0.5, 0.6, 0.7, 0.6, 0.45, 0.15, 0.02, 0.02, 0.02, 0.02]
-        self.assertAlmostEqual(bed.surface_by_solid_fraction(np.arange(10) + 0.5, fraction), 5.0, 12)
+        half = 0.5 * 1.232 / (2.0 + 0.44 / 0.7 - 0.616)
+        self.assertAlmostEqual(bed.surface_by_solid_fraction(np.arange(10) + 0.5, fraction), 4.5 + (0.45 - half) / 0.3, 12)
+        # A block with a flat top that fills 60 % of a layer has its height, in means over four layers.
+        block = np.r_[np.full(13, 0.6), 0.36, np.zeros(6)]
+        self.assertAlmostEqual(bed.surface_by_solid_fraction(0.25 * (np.arange(20) + 0.5), block, 1.0), 3.4, 12)
         for alone in np.linspace(0.1, 0.6, 51):   # all grains in one layer, whatever the rounding: half-way to the next
             self.assertAlmostEqual(bed.surface_by_solid_fraction([0.1, 0.3, 0.7], [alone, 0.0, 0.0]), 0.2, 12)
 
