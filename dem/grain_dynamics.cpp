@@ -53,7 +53,6 @@ void GrainDynamics::evaluate_forces(double time_step) {
 }
 
 void GrainDynamics::hold_on_rough_floor() {
-  moving_.forget_stops();
   for_each_held([this](std::size_t s) { return touches_rough_floor(moving_[s].position[2], moving_[s].position[3]); },
                 [this](std::size_t s) { moving_.stop_along_floor(s); },
                 [this](std::size_t n) { clumps_.stop_along_floor(n, moving_); });
@@ -82,10 +81,7 @@ void GrainDynamics::advance(int sub_steps) {
     moving_.gather_from(store_, body_force_);
     clumps_.gather_loads(store_);
   }
-  if (parameters_.integrator == Integrator::gear)
-    advance_by_gear(sub_steps);
-  else
-    advance_by_verlet(sub_steps);
+  advance_by_verlet(sub_steps);
   const auto scope = timer_.measure(motion_phase_);
   moving_.scatter_to(store_);
 }
@@ -137,22 +133,6 @@ void GrainDynamics::advance_by_verlet(int sub_steps) {
     clumps_.place(moving_, box_);
   });
   place_prescribed(time(), time());
-}
-
-void GrainDynamics::advance_by_gear(int sub_steps) {
-  const double dt = parameters_.time_step;
-  timed(motion_phase_, [&] { gear_.gather_from(store_, moving_, dt); });
-  for (int s = 0; s < sub_steps; ++s) {
-    timed(motion_phase_, [&] { gear_.predict(moving_); });
-    ++steps_done_;
-    place_prescribed(time(), time());
-    timed(messages_phase_, [&] { ghosts_.refresh(moving_); });
-    list_.forget_near_pairs();  // a prediction moves by more than its velocity
-    evaluate_forces(dt);
-    timed(motion_phase_, [&] { gear_.correct(moving_); });
-  }
-  place_prescribed(time(), time());
-  timed(motion_phase_, [&] { gear_.scatter_to(store_); });
 }
 
 void GrainDynamics::refresh_ghosts() {

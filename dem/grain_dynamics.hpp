@@ -1,5 +1,4 @@
-// The grains of a run and their motion with contacts, on the blocks of a decomposition: velocity Verlet, or Gear's
-// predictor-corrector (gear_predictor.hpp). Velocity Verlet is
+// The grains of a run and their motion with contacts, on the blocks of a decomposition, by velocity Verlet:
 //
 //   v(n+1/2) = v(n) + dt/2 a(n);  x(n+1) = x(n) + dt v(n+1/2);  forces from x(n+1), v(n+1/2);
 //   v(n+1) = v(n+1/2) + dt/2 a(n+1);  the same for the angular velocity with I = 2/5 m R^2 (disks 1/2 m R^2).
@@ -26,10 +25,8 @@
 #include "dem/force_field.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/lightest_grain.hpp"
-#include "dem/motion/gear_predictor.hpp"
 #include "dem/motion/grain_seed.hpp"
 #include "dem/motion/grain_store.hpp"
-#include "dem/motion/integrator.hpp"
 #include "dem/motion/packed_grain_state.hpp"
 #include "dem/motion/walls.hpp"
 #include "dem/ranks/ghost_exchange.hpp"
@@ -61,12 +58,11 @@ struct GrainParameters {
   std::vector<Sink> sinks;
   // N, of a grain by its mass (kg) and radius (m, of a clump that of its volume), constant; empty: none
   std::function<Vec3(double mass, double radius)> body_force;
-  double time_step = 0.0;  // s, of a sub-step: at most a 20th of the shortest contact time
-  Integrator integrator = Integrator::velocity_verlet;
+  double time_step = 0.0;    // s, of a sub-step: at most a 20th of the shortest contact time
   int sub_steps = 1;         // at most that many between two calls of prepare()
   double skin = 0.0;         // m: the neighbour list holds until a grain has moved half of it
   double ghost_width = 0.0;  // m: grains at least this near to a rank's block are its ghosts at all times
-  int attached_width = 0;    // the caller's columns attached to every grain (Gear's predictor adds its own behind them)
+  int attached_width = 0;    // the caller's columns attached to every grain
   std::optional<LubricationParameters> lubrication;  // between near surfaces, in every sub-step
   std::shared_ptr<ForceField> field;                 // on every grain, in every sub-step
   double disk_thickness = 0.0;                       // m, of disks in an x-z plane: I = 1/2 m R^2; 0: spheres
@@ -188,8 +184,8 @@ public:
   std::vector<Contact> contacts() const;
 
   // Every contact of every owned grain, as it felt it in the last sub-step (contact_forces.hpp, acting_state.hpp); of a
-  // clump's member, with the arm from the clump's centre. After Gear's correction, a load() and in prepare() by the
-  // velocities of the store.
+  // clump's member, with the arm from the clump's centre. After a load() and in prepare() by the velocities of
+  // the store.
   void for_each_contact(const std::function<void(std::size_t slot, const Vec3& arm, const Vec3& force)>& visit) const;
   // Visits the lubrication forces (lubrication.hpp) likewise; there are none without lubrication.
   void for_each_lubrication(
@@ -259,7 +255,6 @@ private:
   void for_each_wall_overlap(Visitor&& visit) const;
   void take_seeds(GrainSeeds seeds);
   void check_kinds(std::span<const GrainSeed> grains) const;
-  void check_integrator() const;
   double list_range() const;
   void wrap_positions();
   // Distance (m) of grains and walls from where the list was built, and bound of their speed (m/s); both the largest
@@ -322,7 +317,6 @@ private:
   template <typename Work>
   void timed(int phase, Work&& work);
   void advance_by_verlet(int sub_steps);
-  void advance_by_gear(int sub_steps);
 
   Decomposition decomposition_;
   PeriodicBox box_;
@@ -346,9 +340,8 @@ private:
   GrainStore store_;
   GhostExchange ghosts_;
   NeighbourList list_;
-  GearPredictor gear_;
   PackedGrainState moving_;  // the state during the sub-steps
-  ActingState acting_;       // of the last sub-step by Verlet, until the ghosts are made anew
+  ActingState acting_;       // of the last sub-step, until the ghosts are made anew
   Clumps clumps_{parameters_.disk_thickness};
   std::vector<Vec3> listed_position_;  // of owned grains, when the list was built
   std::vector<Plane> listed_planes_;

@@ -37,11 +37,10 @@ int saved_width(const ArchiveReader& archive, const std::string& group) {
   return shape.size() < 2 ? 1 : static_cast<int>(shape[1]);
 }
 
-// True if the saved columns fit this run: as many of the system, and as many in all with those of the integrator.
-// (States saved before the system's columns were counted have only the total.)
-bool has_columns(const ArchiveReader& archive, const std::string& group, int of_system, int in_all) {
+// True if the saved columns fit this run. (States saved before the system's columns were counted have only the total.)
+bool has_columns(const ArchiveReader& archive, const std::string& group, int width) {
   const std::string name = group + "/system_columns";
-  return saved_width(archive, group) == in_all && (!archive.has(name) || archive.integer_attribute(name) == of_system);
+  return saved_width(archive, group) == width && (!archive.has(name) || archive.integer_attribute(name) == width);
 }
 
 // Throws on every rank, naming the same grain, the one with the lowest id.
@@ -190,8 +189,7 @@ void GrainDynamics::restore(ArchiveReader& archive, const std::string& group, Re
   global_count_ = static_cast<std::int64_t>(archive.shape(group + "/radius").at(0));
   // A start may be that of another kind of run, whose columns mean something else.
   const bool same_columns =
-      what == Restored::whole ||
-      (what == Restored::start && has_columns(archive, group, parameters_.attached_width, store_.attached_width));
+      what == Restored::whole || (what == Restored::start && has_columns(archive, group, store_.attached_width));
   GrainBatch batch =
       read_grains(archive, group, RowRange(global_count_, ranks, me), same_columns ? store_.attached_width : 0);
   if (!same_columns) batch.attached.assign(batch.rows.size() * store_.attached_width, 0.0);
@@ -287,7 +285,6 @@ std::vector<Clump> GrainDynamics::load_clumps(ArchiveReader& archive, const std:
   clump_count_ = 0;
   if (!archive.has(group + "/clump_id")) return {};
   clump_count_ = static_cast<std::int64_t>(archive.shape(group + "/clump_id").at(0));
-  check_integrator();
   // Every rank that read a member is told of the clump; the one that read the first member passes it on.
   const std::vector<ClumpRow> read = read_clumps(archive, group, RowRange(clump_count_, ranks, me));
   const Readers readers(batch, communicator_);

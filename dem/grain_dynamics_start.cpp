@@ -34,10 +34,6 @@ MaterialTable table_of(const GrainParameters& p) {
   return MaterialTable(materials, p.wall_contact);
 }
 
-int columns_of(const GrainParameters& p) {
-  return p.attached_width + (p.integrator == Integrator::gear ? GearPredictor::columns : 0);
-}
-
 }  // namespace
 
 void check_time_step(const GrainParameters& p, std::span<const LightestGrain> lightest, std::int64_t count) {
@@ -76,7 +72,7 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
                                  [](const Solid& solid) { return solid.motion.moves(); })),
       assemblies_(parameters.assemblies, seeds.grains),
       turnover_(parameters.supplies, parameters.sinks, decomposition.box()),
-      store_(columns_of(parameters), parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
+      store_(parameters.attached_width, parameters.disk_thickness > 0.0 ? GrainStore::of_disk : GrainStore::of_sphere),
       ghosts_(decomposition, communicator, ghost_reach(), largest_offset_),
       lists_phase_(timer_.phase("contact lists")),
       forces_phase_(timer_.phase("contact forces")),
@@ -85,7 +81,6 @@ GrainDynamics::GrainDynamics(const Decomposition& decomposition, MPI_Comm commun
   assert(decomposition.ranks() == size_of(communicator));
   place_solids(0.0, 0.0);
   take_seeds(std::move(seeds));
-  check_integrator();
   check_prescribed_speed();
   planes_ = parameters_.walls;
   for (std::size_t w = 0; w < planes_.size(); ++w)
@@ -144,12 +139,6 @@ void GrainDynamics::check_kinds(std::span<const GrainSeed> grains) const {
       throw InputError(fmt::format("Grain {} is {:g} m thick, and the grains of the run {:g} m (0: spheres).", grain.id,
                                    grain.thickness, parameters_.disk_thickness));
   }
-}
-
-void GrainDynamics::check_integrator() const {
-  const bool gear = parameters_.integrator == Integrator::gear;
-  if (clump_count_ > 0 && gear)
-    throw InputError("Clumps are moved by velocity Verlet, not by Gear's predictor-corrector; use the former.");
 }
 
 // The neighbour list must outlast a step.

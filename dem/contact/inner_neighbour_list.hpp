@@ -36,7 +36,6 @@ public:
   const std::vector<NearPair>& pairs() const { return pairs_; }
 
   void grains_moved(double distance) { moved_ += distance; }  // m, at most, since the last call
-  void forget() { known_ = false; }
 
 private:
   double margin_;

@@ -76,10 +76,6 @@ struct NeighbourList {
     near.grains_moved(distance);
     near_surfaces.grains_moved(distance);
   }
-  void forget_near_pairs() {
-    near.forget();
-    near_surfaces.forget();
-  }
 };
 
 // Keys of contacts among the ids of partners: -1 - w for wall w, then -1 - (walls + touches_per_solid s + n) for touch

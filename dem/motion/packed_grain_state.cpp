@@ -75,11 +75,6 @@ void PackedGrainState::stop_along_floor(std::size_t slot) {
     grain.velocity[axis] = 0.0;
     grain.force[axis] = -loads_[slot].force[axis];
   }
-  stopped_.push_back(slot);
-}
-
-void PackedGrainState::forget_forces() {
-  for (PackedGrain& grain : grains_) grain.force = grain.torque = zero;
 }
 
 void PackedGrainState::two_half_kicks_and_drift(double time_step) {

@@ -44,18 +44,8 @@ public:
   // Replaces the force (N) on an owned grain besides its contacts, until the next gather_from().
   void set_load(std::size_t slot, const Vec3& force) { loads_[slot].force = double4(force, loads_[slot].force[3]); }
 
-  // The force (N) on an owned grain besides its contacts, and its inverse mass (1/kg) last; likewise the torque.
-  const Double4& load_force(std::size_t slot) const { return loads_[slot].force; }
-  const Double4& load_torque(std::size_t slot) const { return loads_[slot].torque; }
-
   // An owned grain does not move along the floor, in x and y: stops it, and has its contacts take the load along them.
   void stop_along_floor(std::size_t slot);
-  // Slots that have been stopped since the last forget_stops().
-  std::span<const std::size_t> stopped() const { return stopped_; }
-  void forget_stops() { stopped_.clear(); }
-
-  // Sets the contact forces of all grains to zero.
-  void forget_forces();
 
   // Upper bound of the present speeds (m/s) of ghosts and of owned grains, for the latter at the last drift;
   // `written`: velocities have been written since, so all are searched.
@@ -75,7 +65,6 @@ private:
 
   std::vector<PackedGrain> grains_;
   std::vector<Load> loads_;
-  std::vector<std::size_t> stopped_;
   Double4 fastest_{};  // of the last drift: the largest squares of the components of a velocity
 };
 

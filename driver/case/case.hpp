@@ -16,7 +16,6 @@
 #include "coupling/keys/face_keys.hpp"
 #include "coupling/keys/fluid_keys.hpp"
 #include "coupling/system/initial_fluid.hpp"
-#include "dem/motion/integrator.hpp"
 #include "io/vtk/output_keys.hpp"
 #include "loop/out_of_bounds.hpp"
 #include "model_fluid/model_fluid_keys.hpp"
@@ -125,8 +124,7 @@ struct SteadyCase {
 };
 
 struct RunCase {
-  double until = 0.0;  // s
-  dem::Integrator grain_integrator = dem::Integrator::velocity_verlet;
+  double until = 0.0;                       // s
   std::optional<AtRestCase> until_at_rest;  // of dry grains: the run ends earlier when this holds
   std::optional<SteadyCase> until_steady;   // of a column: the run ends earlier when this holds
   loop::OutOfBounds watchdog = loop::OutOfBounds::stop;

@@ -111,16 +111,14 @@ static void describe(SectionVisitor& visit, AtRestCase& rest) {
              {.meaning = "share of the free grains that must be at rest", .above = 0.0, .at_most = 1.0});
 }
 
-static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid, bool with_grains) {
+static void describe_run(SectionVisitor& visit, RunCase& run, bool with_fluid) {
   visit.real("until", run.until,
              {.unit = "s",
               .meaning = "simulated time at which the run ends",
               .required = true,
               .above = 0.0,
               .example = 30.0});
-  visit.choice(
-      "grain_integrator", run.grain_integrator,
-      {.meaning = "how the grains are moved", .only_if = {with_grains, "a fluid alone has no grains; remove the key"}});
+  visit.not_here("grain_integrator", "the grains are moved by velocity Verlet; remove the key");
   visit.choice<loop::OutOfBounds>("watchdog", run.watchdog,
                                   {{loop::OutOfBounds::stop, "stop", "end the run with exit code 1"},
                                    {loop::OutOfBounds::warn, "warn", "continue as long as all figures are finite"}},
@@ -289,7 +287,7 @@ static void describe_run_and_results(SectionVisitor& visit, Case& c) {
   visit.require(c.solids.empty() || !c.disks, "solids",
                 "disks move in a plane, which a solid would push them out of; give walls");
   visit.section("run", {.meaning = "duration and time integration", .required = true},
-                [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid, with_grains); });
+                [&](SectionVisitor& inside) { describe_run(inside, c.run, with_fluid); });
   visit.section(
       "output", {.meaning = "what the run writes, besides run.log and summary.json"}, [&](SectionVisitor& inside) {
         describe(inside, c.output, {with_fluid, "a run without fluid has no output of it; remove the section"},

@@ -105,7 +105,6 @@ dem::GrainParameters grain_parameters(const Case& c, const PeriodicBox& box) {
   if (c.coupling.lubrication) parameters.lubrication = lubrication_parameters(c, parameters.walls.size());
   parameters.time_step = grain_time_step(c);
   parameters.disk_thickness = c.disks ? c.disks->thickness : 0.0;
-  parameters.integrator = c.run.grain_integrator;
   parameters.sub_steps = static_cast<int>(grain_steps(c));
   parameters.skin = (has_fluid(c) ? skin_in_diameters : dry_skin_in_diameters) * smallest_diameter(c);
   parameters.initial_overlap = std::max(parameters.initial_overlap, beds::allowed_overlap(c.grains));

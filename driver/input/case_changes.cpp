@@ -91,9 +91,8 @@ bool same(const std::string& one, const std::string& other) {
   return *end_of_one == '\0' && *end_of_other == '\0' && !one.empty() && !other.empty() && same_but_for_rounding(a, b);
 }
 
-// In full gravity the pressure of the fluid is hydrostatic, and an integrator has columns of its own. Earlier
-// checkpoints do not say which it was.
-bool is_said_lately(std::string_view key) { return key == "gravity.mode" || key == "run.grain_integrator"; }
+// In full gravity the pressure of the fluid is hydrostatic. Earlier checkpoints do not say whether it was.
+bool is_said_lately(std::string_view key) { return key == "gravity.mode"; }
 
 bool is_in_the_checkpoint(std::string_view key) {
   constexpr std::array<std::string_view, 7> state{"system",          "domain.size", "domain.spacing", "disks",

@@ -144,8 +144,6 @@ void check_disks(const Case& c, const io::YamlDocument& document) {
 void check_clumps(const Case& c, const io::YamlDocument& document) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     if (c.grains[n].clumps.count == 0) continue;
-    if (c.run.grain_integrator == dem::Integrator::gear)
-      throw document.error("run.grain_integrator", "clumps are moved by velocity_verlet; give that or no clumps");
     if (c.grains[n].motion)
       throw document.error(fmt::format("grains.{}.motion", n),
                            "grains that move together as one body must be spheres, and this bed has clumps; use "

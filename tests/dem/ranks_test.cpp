@@ -20,7 +20,6 @@ struct Case {
   Vec3 gravity;          // m/s^2
   Vec3 drift;            // m/s, of all grains at the start: a heap in contact crosses the borders between ranks
   bool elastic = false;  // Hertz and Mindlin, two materials, tangential damping
-  Integrator integrator = Integrator::velocity_verlet;
   bool clumps = false;   // every other grain is one
   double rolling = 0.0;  // rolling friction
   bool moving = false;   // the floor swings, and the held grains turn about an axis that moves
@@ -139,7 +138,6 @@ GrainParameters parameters_of(const Case& c) {
   p.sub_steps = 10;
   p.skin = 1e-3;
   p.ghost_width = 3e-3;
-  p.integrator = c.integrator;
   p.movable_cuts = c.movable_cuts;
   if (c.lubricated)
     p.lubrication = LubricationParameters{0.02, 6e-4, 4e-4, 1e-2, std::vector<bool>(p.walls.size(), true)};
@@ -311,8 +309,7 @@ void compare(const Case& c, int steps, Layouts wanted = Layouts::all) {
     EXPECT_EQ(grains.contact_count(), alone.contact_count()) << name;
     EXPECT_EQ(grains.largest_overlap(), alone.largest_overlap()) << name;
     EXPECT_EQ(grains.rebuilds(), alone.rebuilds()) << name;
-    // Gear's corrected velocities are not those of its forces.
-    if (c.integrator == Integrator::velocity_verlet) expect_terms_of_the_contact_force(grains);
+    expect_terms_of_the_contact_force(grains);
 
     // The state that one rank saved half way, loaded on all of them, ends alike.
     GrainDynamics restarted(decomposition, MPI_COMM_WORLD, p, GrainSeeds{});
@@ -338,12 +335,6 @@ TEST(Ranks, HeapThatSlidesAcrossBorders) {
 TEST(Ranks, ElasticHeapOfTwoMaterials) {
   compare({{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0), true}, 240,
           Layouts::two);
-}
-
-TEST(Ranks, HeapMovedByGearsPredictor) {
-  Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 60, Vec3(4.0, 2.0, -15.0), Vec3(0.4, 0.3, 0.0)};
-  c.integrator = Integrator::gear;
-  compare(c, 240, Layouts::two);
 }
 
 TEST(Ranks, CloudOfClumpsInAPeriodicBox) {
@@ -378,8 +369,6 @@ TEST(Ranks, HeapOnSolids) {
 TEST(Ranks, HeapOnAMovingFloorWithARigidAssembly) {
   Case c{{16, 16, 16}, 1.5e-3, {true, true, false}, 80, Vec3(4.0, 2.0, -25.0), Vec3(0.4, 0.3, 0.0)};
   c.moving = true;
-  compare(c, 240, Layouts::two);
-  c.integrator = Integrator::gear;
   compare(c, 240, Layouts::two);
 }
 
@@ -424,8 +413,6 @@ TEST(Ranks, HeapWithLiquidBridges) {
   compare(c, 240, Layouts::two);
   c.elastic = true;
   c.rolling = 0.1;
-  compare(c, 240, Layouts::two);
-  c.integrator = Integrator::gear;
   compare(c, 240, Layouts::two);
 }
 

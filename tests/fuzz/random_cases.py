@@ -371,8 +371,6 @@ def run(chance, case, step, end):
         return content
     content["time_step"] = step
     if case["system"] == "grains":
-        if not any("shape" in grain for grain in case["grains"]):
-            maybe(chance, content, "grain_integrator", lambda: "gear", 0.3)
         if "supplies" not in case:
             maybe(chance, content, "until_at_rest",
                   lambda: {"largest_speed": 0.1, "largest_acceleration": 1, "quantile": 0.7}, 0.3)

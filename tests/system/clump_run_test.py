@@ -137,7 +137,6 @@ analysis: {transport_rate: {}}
         for setting, words in (
                 ("grains.1.orientation={axis: [0, 0, 1], angle: 1.0}", ("grains.1.orientation", "spheres")),
                 ("grains.0.shape.clump=[]", ("grains.0.shape.clump",)),
-                ("run.grain_integrator=gear", ("run.grain_integrator", "velocity_verlet")),
                 ("grains.0.shape.clump.1.position=[0.017, 0, 0]", ("domain.size", "touch itself")),
                 ("grains.0.count=400", ("grains",))):
             with self.subTest(setting):

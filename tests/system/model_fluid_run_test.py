@@ -37,10 +37,8 @@ output: {series: {every: 0.1}, checkpoint: {every: 2, keep: 3}}
     def test_the_same_bits_on_any_ranks_and_after_a_restart(self):
         self.check_bits()
 
-    def test_the_same_bits_with_gears_integrator_and_friction(self):
-        self.check_bits(
-            "--set", "run.grain_integrator=gear", "--set", "contact.friction=0.6", "--set", "run.time_step=6e-4"
-        )
+    def test_the_same_bits_with_friction(self):
+        self.check_bits("--set", "contact.friction=0.6", "--set", "run.time_step=6e-4")
 
     def check_bits(self, *settings):
         self.run_well("run", self.case, *settings, "--out", "one")

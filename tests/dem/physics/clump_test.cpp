@@ -343,9 +343,6 @@ TEST(Clump, ThatCannotBeIsRefused) {
     }
   };
   const ClumpSeed good = glass_clump(0, dumbbell(), Vec3::Constant(0.02));
-  GrainParameters gear = p;
-  gear.integrator = Integrator::gear;
-  refused(gear, {}, good, "Gear");
   refused(p, {test::glass_sphere(1, Vec3::Constant(0.04))}, good, "given twice");
   refused(p, {test::glass_sphere(2, Vec3(0.02, 0.02, 0.024))}, good, "overlap");
   refused(p, {}, glass_clump(0, dumbbell(), Vec3(0.02, 0.02, 0.003)), "into the wall");

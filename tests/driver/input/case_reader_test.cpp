@@ -290,7 +290,7 @@ TEST(CaseReader, DefaultsAndExamplesAreToldApart) {
     EXPECT_TRUE(comment_of(key).starts_with("example, ")) << key << comment_of(key);
   for (const std::string key :
        {"  precision: ", "  collision: ", "  mode: ", "      seed: ", "    velocity: ", "  friction: ", "  law: ",
-        "  links: ", "  grain_steps_per_fluid_step: ", "  grain_integrator: ", "domain:", "contact:", "    fixed: "})
+        "  links: ", "  grain_steps_per_fluid_step: ", "domain:", "contact:", "    fixed: "})
     EXPECT_EQ(comment_of(key).find("example"), std::string::npos) << key << comment_of(key);
 }
 
