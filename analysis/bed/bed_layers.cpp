@@ -47,10 +47,7 @@ BedLayers::Bed BedLayers::bed(const Snapshot& snapshot) const {
   return {height, bulk_solid_fraction(below), obstacles_above(below, height)};
 }
 
-bool BedLayers::obstacles_are_the_bed(const Snapshot& snapshot) const {
-  return !obstacles_.empty() && static_cast<std::int64_t>(obstacles_.size()) == snapshot.grains.global_count;
-}
-
+// Of each grain here, whether it floats over a bed of others; empty where there is no such grain.
 std::vector<char> BedLayers::floating(const Snapshot& snapshot) const {
   if (floating_density_ <= 0.0) return {};
   const GrainView& grains = snapshot.grains;
@@ -65,7 +62,7 @@ std::vector<char> BedLayers::floating(const Snapshot& snapshot) const {
     floating[i] = is_free && density <= floating_density_ ? 1 : 0;
     if (floating[i] != 0)
       ++afloat;
-    else if (!is_obstacle(grains.id[i]))
+    else if (!obstacles_.has(grains.id[i]))
       ++others;
   }
   afloat = sum_over_ranks(communicator_, afloat);
@@ -73,14 +70,20 @@ std::vector<char> BedLayers::floating(const Snapshot& snapshot) const {
   return afloat > 0 && others > 0 ? floating : std::vector<char>();
 }
 
-bool BedLayers::is_obstacle(GlobalId id) const { return std::binary_search(obstacles_.begin(), obstacles_.end(), id); }
+std::vector<char> BedLayers::not_of_the_bed(const Snapshot& snapshot) const {
+  std::vector<char> found = floating(snapshot);
+  const std::vector<char> obstacles = obstacles_.in_the_bed(snapshot);
+  if (found.empty()) return obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) found[i] |= obstacles[i];
+  return found;
+}
 
 std::vector<double> BedLayers::spheres_below(const Snapshot& snapshot) const {
-  if (obstacles_.empty()) return {};
+  if (!obstacles_.any()) return {};
   const GrainView& grains = snapshot.grains;
   std::vector<SphereInBed> spheres;
   for (std::size_t i = 0; i < grains.id.size(); ++i)
-    if (is_obstacle(grains.id[i])) {
+    if (obstacles_.has(grains.id[i])) {
       const Vec3& centre = grains.position[i];
       spheres.push_back({grains.id[i], {centre.x(), centre.y(), centre.z()}, grains.radius[i]});
     }
@@ -103,7 +106,7 @@ std::vector<double> BedLayers::grains_below(const Snapshot& snapshot) const {
 void BedLayers::give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
                              const std::vector<char>& floating, const TermTaker& take) const {
   for (std::size_t i = 0; i < grains.id.size(); ++i) {
-    if (is_obstacle(grains.id[i]) || (!floating.empty() && floating[i] != 0)) continue;
+    if (obstacles_.has(grains.id[i]) || (!floating.empty() && floating[i] != 0)) continue;
     const double radius = grains.radius[i], foot = grains.position[i].z() - radius;
     const double share = grains.is_member(i) ? shares.at(grains.clump[i]) : 1.0;
     const int first = static_cast<int>(std::floor(foot / thickness_));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/bed/bed_height.hpp"
+#include "analysis/bed/obstacle_grains.hpp"
 #include "analysis/observer/run_context.hpp"
 #include "core/geometry/periodic_box.hpp"
 #include "core/state/snapshot.hpp"
@@ -28,12 +29,13 @@ public:
   };
   Bed bed(const Snapshot& snapshot) const;  // the same bits on any ranks; collective
   double width() const { return width_; }   // m, of the bed
-  // Of each grain here, whether it floats over a bed of others; empty where there is no such grain. Collective.
-  std::vector<char> floating(const Snapshot& snapshot) const;
-  bool obstacles_are_the_bed(const Snapshot& snapshot) const;  // spheres that are obstacles are all the grains
+  // Of each grain here, whether it is none of the bed: it floats over it, or is an obstacle in it. Empty where there is
+  // no such grain. Collective.
+  std::vector<char> not_of_the_bed(const Snapshot& snapshot) const;
+  bool obstacles_are_the_bed(const Snapshot& snapshot) const { return obstacles_.are_the_bed(snapshot); }
 
 private:
-  bool is_obstacle(GlobalId id) const;
+  std::vector<char> floating(const Snapshot& snapshot) const;
   std::vector<double> grains_below(const Snapshot& snapshot) const;
   void give_volumes(const GrainView& grains, const std::map<GlobalId, double>& shares,
                     const std::vector<char>& floating, const TermTaker& take) const;
@@ -44,7 +46,7 @@ private:
   int layers_;        // thin ones
   double thickness_;  // m, of a thin layer
   double width_;
-  std::vector<GlobalId> obstacles_;
+  ObstacleGrains obstacles_;
   std::vector<double> solids_below_;  // m^3, at the heights of the layers; empty: there are none
   double floating_density_;           // kg/m^3, as BedObstacles has it
 };

@@ -64,7 +64,7 @@ void BedSurface::observe(const Snapshot& snapshot) {
   measure(snapshot);
   if (again) return;
   seen_step_ = snapshot.step;
-  if (pixels_.look(snapshot, layers_.floating(snapshot)) && counts_from(keys_.from, pixels_.begun())) {
+  if (pixels_.look(snapshot, layers_.not_of_the_bed(snapshot)) && counts_from(keys_.from, pixels_.begun())) {
     ++pictures_;
     for (std::size_t c = 0; c < surface_sums_.size(); ++c) {
       surface_sums_[c] += pixels_.surface()[c];

@@ -71,7 +71,7 @@ double PassageSums::all_volume_of(Passage passage) const {
 }
 
 Reach::Reach(MPI_Comm communicator, const PeriodicBox& box, const TransportScales& scales, const ReachKeys& keys,
-             double disk_thickness, bool recirculation)
+             double disk_thickness, bool recirculation, std::vector<GlobalId> obstacles)
     : communicator_(communicator),
       scales_(scales),
       sections_(sections_of(box, keys, scales.grain_diameter)),
@@ -80,6 +80,7 @@ Reach::Reach(MPI_Comm communicator, const PeriodicBox& box, const TransportScale
       every_(keys.every),
       record_every_(keys.record_every),
       moving_speed_(keys.moving_speed.value_or(scales.moving_speed())),
+      obstacles_(std::move(obstacles)),
       pixels_(pixels_of(communicator, box, keys, scales.grain_diameter)),
       book_(communicator, sections_, scales.grain_diameter, moving_speed_, recirculation),
       residence_(communicator, sections_.length / scales.fall_speed()),
@@ -99,7 +100,7 @@ void Reach::observe(const Snapshot& snapshot) {
   const bool first = seen_step_ < 0;
   seen_step_ = snapshot.step;
   const std::vector<Body> bodies = free_bodies_of(snapshot.grains);
-  const bool complete = pixels_.look(snapshot);
+  const bool complete = pixels_.look(snapshot, obstacles_.in_the_bed(snapshot));
   const GrainBook::Page page =
       book_.look(snapshot.time, snapshot.decomposition->box(), snapshot.grains.end_of_ids(), bodies);
   const std::int64_t arrived_before = interval_.all_grains_of(Passage::arrived);

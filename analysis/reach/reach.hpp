@@ -19,6 +19,7 @@
 // times (residence.hpp) count from the first look on.
 #pragma once
 
+#include "analysis/bed/obstacle_grains.hpp"
 #include "analysis/bed/static_pixels.hpp"
 #include "analysis/observer/saved_settings.hpp"
 #include "analysis/observer/transport_scales.hpp"
@@ -56,9 +57,10 @@ struct PassageSums {
 
 class Reach : public Observer {
 public:
-  // disk_thickness: m, 0: spheres. recirculation: as GrainBook has it. The box must end in walls along z.
+  // disk_thickness: m, 0: spheres. recirculation: as GrainBook has it. obstacles: ids, ascending, of grains that the
+  // level leaves out. The box must end in walls along z.
   Reach(MPI_Comm communicator, const PeriodicBox& box, const TransportScales& scales, const ReachKeys& keys,
-        double disk_thickness = 0.0, bool recirculation = false);
+        double disk_thickness = 0.0, bool recirculation = false, std::vector<GlobalId> obstacles = {});
 
   std::string name() const override { return ReachKeys::section; }
   double every() const override { return every_; }
@@ -127,6 +129,7 @@ private:
   Sections sections_;
   double width_;                                       // m
   double from_, every_, record_every_, moving_speed_;  // s, m/s
+  ObstacleGrains obstacles_;
   StaticPixels pixels_;
   GrainBook book_;
   Residence residence_;

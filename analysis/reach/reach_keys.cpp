@@ -51,7 +51,7 @@ void check(const ReachKeys&, const RunContext& run) {
 
 std::unique_ptr<Observer> make_observer(const ReachKeys& keys, const RunContext& run, const RunningSystem& system) {
   return std::make_unique<Reach>(system.communicator, run.box, transport_scales(run), keys, run.grains->disk_thickness,
-                                 run.grains->recirculation);
+                                 run.grains->recirculation, run.grains->obstacles.spheres);
 }
 
 }  // namespace thalweg::analysis

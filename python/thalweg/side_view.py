@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.errors import RunFolderError
-from thalweg.obstacles import floating
+from thalweg.obstacles import floating, obstacles
 from thalweg.units import units_of
 
 COVERED = 0.6         # share of its perimeter behind others from which a grain is invisible
@@ -67,7 +67,7 @@ class Surface(NamedTuple):
 def static_surface(run, time=None, duration=AT_REST):
     """Surface of the bed at a time in s (the last frame if None): the outline, from above, of the pixels that showed
     the same grain in all frames of the `duration` (s) around it, or at the ends of a run before or after it. Grains that
-    float over the bed are left out."""
+    float over the bed and obstacles in it are left out."""
     times, second = run.grains.times, units_of(run).named("s")
     if len(times) < 2 or times[-1] - times[0] < duration:
         raise RunFolderError(f"{run.folder}: static pixels need frames of the grains over {duration:g} {second}.")
@@ -77,7 +77,14 @@ def static_surface(run, time=None, duration=AT_REST):
     if len(window) < 3:
         raise RunFolderError(f"{run.folder}: static pixels need three frames of the grains in {duration:g} {second}; "
                              f"set output.grains.every to {duration / 5:g} {second} or less.")
-    return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0], lambda frame: floating(run, frame))
+    return surface_of(window, run.size, PIXEL * run.diameter, run.periodic[0], lambda frame: not_of_the_bed(run, frame))
+
+
+def not_of_the_bed(run, frame):
+    """Which grains of a frame float over the bed or are obstacles in it; obstacles that are all the grains are the
+    bed."""
+    stands = obstacles(run, frame)
+    return floating(run, frame) | (stands & ~stands.all())
 
 
 def surface_of(frames, size, pixel, periodic_x=True, left_out=None):

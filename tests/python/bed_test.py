@@ -253,6 +253,21 @@ class Layers(made_up.MadeUpFolder):
         with self.assertRaisesRegex(thalweg.RunFolderError, "reach the top"):
             bed.bed_height(thalweg.Run(self.folder))
 
+    def test_obstacles_are_not_what_stands_still(self):
+        # A boulder four diameters wide that stands half out of the bed.
+        still, frames = self.bed_of_layers(8), 4
+        boulder = D * np.array([[5.0, 1.0, 8.0]])
+        case = self.folder / "case.yaml"
+        case.write_text(case.read_text().replace(
+            "grains: [{", f"grains: [{{fixed: true, placement: {{positions: {boulder.tolist()}}}}}, {{"))
+        times = 0.2 * np.arange(frames)
+        self.write_frames(times, [still] * frames)
+        right = bed.static_bed_height(thalweg.Run(self.folder), frames=1)
+        places = np.vstack([boulder, still])
+        radius = np.r_[2.0 * D, np.full(len(still), 0.5 * D)]
+        self.write_frames(times, [places] * frames, radius=[radius] * frames)
+        self.assertEqual(bed.static_bed_height(thalweg.Run(self.folder), frames=1), right)
+
     def test_solids_that_stand_still_take_their_room(self):
         # A block over a quarter of the length, as high as half of the box, and another one that moves.
         case = self.folder / "case.yaml"

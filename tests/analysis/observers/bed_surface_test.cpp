@@ -168,6 +168,25 @@ TEST(BedSurface, LeavesOutGrainsThatFloat) {
   EXPECT_NEAR(value_of(of_raft.diagnostics(), "bed_height"), 32.0 * d, 1e-12);
 }
 
+// A boulder among the grains, here a post of spheres, does not raise the surface of what stands still beside it.
+TEST(BedSurface, LeavesObstaclesOutOfTheStaticPixels) {
+  Spheres spheres(world);
+  const std::vector<Vec3> bed = cubic_lattice(10);
+  std::vector<Vec3> grains = bed;
+  std::vector<GlobalId> post;
+  for (int z = 0; z < 12; ++z) {
+    post.push_back(static_cast<GlobalId>(grains.size()));
+    grains.emplace_back(4.5 * d, 4.5 * d, (9.5 + 0.5 * z) * d);
+  }
+  BedSurface beside(world, spheres.box(), keys(), d, flume, 0.0, {post}),
+      of_bed(world, spheres.box(), keys(), d, flume, 0.0);
+  for (int step = 0; step < 5; ++step) {
+    beside.observe(spheres.at(step, grains));
+    of_bed.observe(spheres.at(step, bed));
+  }
+  EXPECT_EQ(value_of(beside.diagnostics(), "static_bed_height"), value_of(of_bed.diagnostics(), "static_bed_height"));
+}
+
 // As once all have gone by a sink.
 TEST(BedSurface, OfNoGrainsIsTheFloor) {
   Spheres spheres(world);

@@ -216,6 +216,18 @@ TEST(Reach, HasTheLevelOfWhatStandsStillAndItsTrend) {
   EXPECT_NEAR(named(reach.profiles(), "bed_level_trend").values.at(2), 0.125, 1e-12);
 }
 
+// A boulder beside the grain, of the same bin, that reaches higher.
+TEST(Reach, HasTheLevelWithoutObstacles) {
+  const Play play(true, 2, [](GlobalId id, int) { return std::optional(Place{5.0, 0.0, id == 0 ? 1.0 : 3.0}); });
+  Reach reach(world, play.box(), scales, keys, 0.0, false, {1}), all = observer_of(play, world, false);
+  for (int look = 0; look <= 8; ++look) {
+    play.show(reach, world, look);
+    play.show(all, world, look);
+  }
+  EXPECT_NEAR(value_of(reach.results(), "bed_level_mean"), 1.0 + 0.25 * std::numbers::pi * radius_of(0), *keys.pixel);
+  EXPECT_NEAR(value_of(all.results(), "bed_level_mean"), 3.0 + 0.25 * std::numbers::pi * radius_of(1), *keys.pixel);
+}
+
 // The same grain comes in after two records: the trend is that of the records that have a level.
 TEST(Reach, HasTheTrendOfABedThatIsBuiltUpLater) {
   const Play play(true, 1, [](GlobalId, int look) {
