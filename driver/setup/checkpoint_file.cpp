@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/round_off.hpp"
+#include "driver/case/grain_setup.hpp"
 #include "driver/input/case_changes.hpp"
 #include "driver/input/case_reader.hpp"
 #include "driver/setup/bed_archive.hpp"
@@ -43,6 +44,14 @@ void save_kept_case(ArchiveWriter& archive, const std::string& text) {
   const std::vector<std::string> parts = kept_parts(text);
   archive.attribute("kept_case/parts", static_cast<std::int64_t>(parts.size()));
   for (std::size_t n = 0; n < parts.size(); ++n) archive.attribute(kept_part(n), parts[n]);
+}
+
+// m, of the axes along which the grains have neighbours beyond the end of the box; 0 for the others.
+void save_periods(ArchiveWriter& archive, const Case& c) {
+  if (!has_grains(c.system)) return;
+  const PeriodicBox box = grain_box(c);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    archive.attribute(saved_period(axis), box.periodic[axis] ? box.size[static_cast<int>(axis)] : 0.0);
 }
 
 std::string load_kept_case(const ArchiveReader& archive) {
@@ -93,6 +102,8 @@ void about_file(const std::filesystem::path& path, Work&& work) {
 
 }  // namespace
 
+std::string saved_period(std::size_t axis) { return fmt::format("run/period_{}", "xyz"[axis]); }
+
 void require_checksums(io::Hdf5Reader& checkpoint) {
   if (checkpoint.has("run/format")) checkpoint.require_checksums();
 }
@@ -111,6 +122,7 @@ void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& p
   archive.attribute("run/time", system.time());
   archive.attribute("run/time_step", system.time_step());
   archive.attribute("run/spacing", c.domain.spacing);
+  save_periods(archive, c);
   save_kept_case(archive, kept_case);
   save_beds(archive, communicator, c);
   system.save(archive);

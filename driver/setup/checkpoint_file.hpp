@@ -16,13 +16,18 @@
 
 namespace thalweg::driver {
 
-// A checkpoint: what it is (group "run": format, system, name, version, step, time and time_step in s, spacing in m),
+// A checkpoint: what it is (group "run": format, system, name, version, step, time and time_step in s, spacing and, of
+// grains, the periods of the box in m),
 // the keys of the case that a restart may not change (group "kept_case", case_changes.hpp), the beds it began with, the
 // system, the observers and the run_history. Its bytes do not depend on the number of ranks. kept_case:
 // kept_case_of(c). Collective; RunError on every rank.
 void write_checkpoint_file(MPI_Comm communicator, const std::filesystem::path& path, const Case& c,
                            const std::string& kept_case, const System& system, const Observers& observers,
                            const RunHistory& run_history);
+
+// Name of the attribute with the period (m) of the box of the grains along an axis, 0 where it is not periodic.
+// (Checkpoints of earlier versions have none.)
+std::string saved_period(std::size_t axis);
 
 // Lets a checkpoint be read only where its data have the checksums that it was written with. (Those from before the
 // formats had numbers may have none.)

@@ -2,8 +2,10 @@
 
 #include "beds/population_rows.hpp"
 #include "core/base/error.hpp"
+#include "core/base/round_off.hpp"
 #include "core/parallel/on_first_rank.hpp"
 #include "core/parallel/row_range.hpp"
+#include "driver/case/grain_setup.hpp"
 #include "driver/setup/checkpoint_file.hpp"
 #include "io/folder/run_folder.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
@@ -91,13 +93,30 @@ void refuse_other_rows(const Case& c, std::size_t population, RowRange share, st
                       share.first + static_cast<std::int64_t>(n), what, population));
 }
 
+// Grains that touch across the end of a periodic box would overlap in a shorter one, and lose their neighbours in a
+// longer one or at a wall.
+void refuse_other_periods(const Case& c, const io::Hdf5Reader& archive) {
+  const PeriodicBox box = grain_box(c);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!archive.has(saved_period(axis)) || (c.disks && axis == 1)) continue;
+    const double made = archive.real_attribute(saved_period(axis)), here = box.size[static_cast<int>(axis)];
+    if (made == 0.0 || (box.periodic[axis] && same_but_for_rounding(made, here))) continue;
+    throw InputError(
+        fmt::format("Its box is periodic along {} over {:g} m, and this case's is {} over {:g} m; give the "
+                    "same domain there, or make a bed for this one.",
+                    "xyz"[axis], made, box.periodic[axis] ? "periodic" : "not periodic", here));
+  }
+}
+
 // Grains stay what they were, whatever the case says of them: then q* and the Shields number of the run, and all that
 // `thalweg check` says, would be those of other grains. Each rank compares its share of the rows.
 void refuse_other_grains(const Case& c, const std::filesystem::path& path, const Ranks& ranks) {
   if (std::any_of(c.grains.begin(), c.grains.end(), [](const beds::Population& grains) { return grains.motion; }))
     throw InputError("A case with rigid populations (motion) cannot take over grains; give their placements instead.");
   ranks.on_all([&] {
-    const auto rows = static_cast<std::int64_t>(io::Hdf5Reader(path).shape("grains/radius").at(0));
+    io::Hdf5Reader archive(path);
+    refuse_other_periods(c, archive);
+    const auto rows = static_cast<std::int64_t>(archive.shape("grains/radius").at(0));
     if (rows != grain_rows(c))
       throw InputError(fmt::format("There are {} grains, but this case has {}; give populations with as many.", rows,
                                    grain_rows(c)));

@@ -12,8 +12,8 @@
 namespace thalweg::driver {
 
 // Throws InputError where a run that the case begins from is missing, or lacks what is to be taken from it: a fluid, or
-// the grains that the case describes, of the same size, mass, motion and material. ranks: those that have read the
-// case together, which all throw. Collective.
+// the grains that the case describes, of the same size, mass, motion and material, in a box with the same periods.
+// ranks: those that have read the case together, which all throw. Collective.
 void check_initial_sources(const Case& c, const Ranks& ranks = {});
 
 // The state that the grains of a run come from; empty: the case places them. Collective.

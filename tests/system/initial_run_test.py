@@ -172,6 +172,9 @@ run: {until: 0.01}
         for command in ("check", "run"):
             self.assert_refused(command, self.case, "--set", "initial.from={grains: bed}", "--set", "grains.0.count=5",
                                 words=["initial.from.grains", "6 grains", "has 5"])
+            self.assert_refused(command, self.case, "--set", "initial.from={grains: bed}", "--set",
+                                "domain.size=[0.0144, 0.0128, 0.0192]",
+                                words=["initial.from.grains", "periodic along x over 0.0128 m", "over 0.0144 m"])
             self.assert_refused(command, dry, "--set", "initial.from={fluid: flow}", words=["initial.from.fluid"])
             self.assert_refused(command, flow, "--set", "initial={from: {grains: bed}}", words=["initial.from.grains"])
 
