@@ -94,6 +94,7 @@ void TimeLoop::run() {
   begin_ = WallClock::now();
   printed_step_ = decided_step_ = next_decision_ = system_.step();
   if (plan_.write_at_start) write_what_is_due();
+  if (plan_.save_at_start) checkpoint();
   Decision decision = Decision::go_on;
   while (system_.step() < final_step_ && decision == Decision::go_on) {
     const WallClock::time_point before = WallClock::now();

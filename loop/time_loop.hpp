@@ -80,6 +80,7 @@ struct LoopPlan {
   std::vector<Diagnostic> largest;                   // before the loop, since largest_from
   double largest_from = 0.0;                         // s, simulated
   bool write_at_start = true;                        // false in a continued run: its first frame exists
+  bool save_at_start = false;                        // writes a checkpoint before the first step
   Schedule series;                                   // of measurements and rows of diagnostics
   Schedule checkpoint;                               // of checkpoints; a last one is written in any case
   double checkpoint_wall = 0.0;                      // s of wall time since the last one; 0: only as scheduled

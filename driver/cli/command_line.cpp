@@ -238,9 +238,9 @@ double parse_walltime(const std::string& text) {
     return std::sscanf(text.c_str(), format, fields..., &end) == sizeof...(fields) &&
            end == static_cast<int>(text.size());
   };
-  const bool understood = matches("%d-%d:%2d:%2d%n", &days, &hours, &minutes, &seconds) ||
-                          (days = 0, matches("%d:%2d:%2d%n", &hours, &minutes, &seconds)) ||
-                          (hours = 0, matches("%d:%2d%n", &minutes, &seconds));
+  const bool understood = !text.starts_with('-') && (matches("%d-%d:%2d:%2d%n", &days, &hours, &minutes, &seconds) ||
+                                                     (days = 0, matches("%d:%2d:%2d%n", &hours, &minutes, &seconds)) ||
+                                                     (hours = 0, matches("%d:%2d%n", &minutes, &seconds)));
   const double total = 86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds;
   if (!understood || days < 0 || hours < 0 || minutes < 0 || seconds < 0 || seconds > 59 || total <= 0.0)
     throw InputError(fmt::format("--walltime {} is not a time: write HH:MM:SS, e.g. 23:50:00.", text));

@@ -2,6 +2,7 @@
 
 #include "core/base/error.hpp"
 #include "driver/cli/info_report.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/text/yaml_document.hpp"
 #include "loop/time_loop.hpp"
 
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 namespace thalweg::driver {
 namespace {
@@ -28,6 +30,14 @@ std::optional<double> finished_until(const io::RunFolder& folder) {
 bool is_finished(const io::RunFolder& folder, double until) {
   const std::optional<double> end = finished_until(folder);
   return end && until <= *end * (1.0 + loop::rounding_of_the_end);
+}
+
+// True for a run that went on from another one, by the command in the head of its case.
+bool was_restarted(const io::RunFolder& folder) {
+  std::istringstream text(io::read_text(folder.case_file()));
+  for (std::string line; std::getline(text, line) && line.starts_with("#");)
+    if (line.starts_with("# command") && line.find(" --restart") != std::string::npos) return true;
+  return false;
 }
 
 }  // namespace
@@ -57,6 +67,11 @@ Resumption resumption_of(const io::RunFolder& folder, double until, io::FolderLo
         fmt::format("{}: the run in it has not reached {:g} s and cannot continue, as its checkpoints have been "
                     "removed; it is left alone: choose another folder with --out, or replace it with --overwrite.",
                     folder.path().string(), until));
+  if (was_restarted(folder))
+    throw InputError(
+        fmt::format("{}: the run in it was begun with --restart and has ended before it could save; it is left alone: "
+                    "give that --restart again, with --overwrite in place of --resume.",
+                    folder.path().string()));
   return Resumption::begin_again;
 }
 

@@ -26,7 +26,7 @@ double wanted_end(const std::filesystem::path& case_file, const std::vector<std:
 // Decides how to continue the run in the folder. until: end of the run, s; a finished run with a later end continues.
 // Takes the lock of an unfinished run, then its request to stop (RunFolder::stop), if any: this arrived between two
 // jobs and ends the chain of jobs. Throws InputError if another run holds the lock, or if the run can neither continue
-// nor be replaced without loss because its checkpoints have been removed.
+// nor be replaced without loss, because its checkpoints have been removed or it went on from another run.
 Resumption resumption_of(const io::RunFolder& folder, double until, io::FolderLock& lock);
 
 }  // namespace thalweg::driver

@@ -64,7 +64,8 @@ std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& l
   MPI_Bcast(&found, 1, MPI_INT, 0, communicator);
   switch (static_cast<Resumption>(found)) {
     case Resumption::finished:
-      log.line(fmt::format("{} is finished: nothing to do (give a later --until to continue it)", name));
+      log.line(
+          fmt::format("{} is finished: nothing to do (to continue it, give an --until beyond its run.until)", name));
       return Outcome::finished;
     case Resumption::asked_to_stop:
       log.line(
@@ -84,6 +85,17 @@ std::optional<Outcome> resume(Command& command, std::optional<io::FolderLock>& l
   }
   lock = std::move(taken);
   return {};
+}
+
+// The case with the states that the run begins, or has begun, from.
+Case with_its_sources(Case c, const RunPaths& paths, MPI_Comm communicator) {
+  if (paths.checkpoints.empty()) return with_checkpoints_found(std::move(c), communicator);
+  if (paths.origin.empty()) return c;
+  const io::RunFolder origin(paths.origin);
+  return with_sources_of(
+      paths.origin,
+      told_by_first_rank(communicator, [&] { return io::read_text(origin.case_of(paths.checkpoints.front())); }),
+      std::move(c));
 }
 
 // Changes since this checkpoint of the run that is continued. Throws InputError if it cannot go on with the case.
@@ -188,6 +200,7 @@ loop::LoopPlan plan_of(const Case& c, const Command& command, const RunPaths& pa
   plan.largest = history.largest;
   plan.largest_from = history.largest_from;
   plan.write_at_start = !paths.same_folder;
+  plan.save_at_start = !paths.same_folder && !paths.checkpoints.empty();  // or --resume would begin at the start
   return plan;
 }
 
@@ -367,7 +380,8 @@ Outcome run_case(Command command, MPI_Comm communicator, loop::WallClock::time_p
     lock = lock_folder(paths, communicator);
     paths = paths_of(command, communicator);
   }
-  const Case c = read_case(command.path, command.all_settings(), beds_of(paths.checkpoints), communicator);
+  const Case c = with_its_sources(
+      read_case(command.path, command.all_settings(), beds_of(paths.checkpoints), communicator), paths, communicator);
   on_first_rank(communicator, [&] {
     if (!paths.same_folder) paths.folder.check_new(command.overwrite);
     paths.folder.check_writable();

@@ -19,6 +19,17 @@
 
 namespace thalweg::driver {
 
+// e.g. "the grains of run/checkpoints/step_1000.h5"
+static std::vector<std::string> sources_of_start(const Case& c) {
+  const std::string grains = c.initial.source_of(InitialField::grains).path,
+                    fluid = c.initial.source_of(InitialField::fluid).path;
+  if (!grains.empty() && grains == fluid) return {"grains and fluid of " + grains};
+  std::vector<std::string> sources;
+  if (!grains.empty()) sources.push_back("the grains of " + grains);
+  if (!fluid.empty()) sources.push_back("the fluid of " + fluid);
+  return sources;
+}
+
 void print_header(const Case& c, RunIdentity& identity, const System& system, const io::RunFolder& folder,
                   const StartPoint& start_point, double bandwidth, MPI_Comm communicator, loop::Log& log) {
   log.line(fmt::format("Thalweg {}: {}", version_text(), c.name));
@@ -30,6 +41,8 @@ void print_header(const Case& c, RunIdentity& identity, const System& system, co
   for (const std::string& damage : start_point.damage) log.line("warning: " + damage);
   if (!start_point.checkpoint.empty())
     log.line(fmt::format("resuming from {} at {:.6g} s", start_point.checkpoint.string(), system.time()));
+  else
+    for (const std::string& source : sources_of_start(c)) log.line("beginning with " + source);
   for (const CaseChange& change : start_point.changes)
     log.line(fmt::format("changed since then: {}: {} -> {}", change.key, change.before, change.now));
   for (const auto& [observer, time] : start_point.run_history.since)

@@ -1,7 +1,13 @@
 #include "driver/setup/input_files.hpp"
 
-#include <fmt/format.h>
+#include "core/base/error.hpp"
+#include "core/parallel/on_first_rank.hpp"
+#include "io/folder/run_folder.hpp"
 
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <array>
 #include <optional>
 
 namespace thalweg::driver {
@@ -32,6 +38,18 @@ fs::path first_folder(const fs::path& path) {
   return below.empty() ? below : *below.begin();
 }
 
+std::array<std::optional<std::string>*, 3> sources_of(Case& c) {
+  return {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid};
+}
+
+std::string checkpoint_or(const std::string& path) {
+  try {
+    return io::checkpoint_at(path).string();
+  } catch (const InputError&) {  // whoever reads it says so
+    return path;
+  }
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> inputs_by_key(const Case& c) {
@@ -50,6 +68,31 @@ std::string path_from(const fs::path& folder, const std::string& path) {
 
 Case with_paths_from(const fs::path& folder, Case c) {
   for_each_input(c, [&](const std::string&, std::string& path) { path = path_from(folder, path); });
+  return c;
+}
+
+Case with_checkpoints_found(Case c, MPI_Comm communicator) {
+  for (std::optional<std::string>* source : sources_of(c))
+    if (*source && !(*source)->empty())
+      *source = told_by_first_rank(communicator, [&] { return checkpoint_or(**source); });
+  return c;
+}
+
+Case with_sources_of(const fs::path& folder, const std::string& yaml, Case c) {
+  YAML::Node from;
+  try {
+    from = YAML::Load(yaml)["initial"]["from"];
+  } catch (const YAML::Exception&) {  // a case that somebody has changed by hand
+  }
+  const auto path_at = [&](const YAML::Node& node) -> std::optional<std::string> {
+    if (!node.IsDefined() || !node.IsScalar() || node.Scalar().empty()) return {};
+    return (folder / node.Scalar()).lexically_normal().string();
+  };
+  c.initial.from = {};
+  if (!from.IsMap())
+    c.initial.from.run = path_at(from);
+  else
+    c.initial.from = {path_at(from["run"]), path_at(from["grains"]), path_at(from["fluid"])};
   return c;
 }
 

@@ -3,6 +3,8 @@
 
 #include "driver/case/case.hpp"
 
+#include <mpi.h>
+
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -19,5 +21,12 @@ std::string path_from(const std::filesystem::path& folder, const std::string& pa
 
 // The case with such paths.
 Case with_paths_from(const std::filesystem::path& folder, Case c);
+
+// The case with the checkpoint that `initial.from` finds now in place of a run folder, which may get later ones; a path
+// that leads to none stays. Collective.
+Case with_checkpoints_found(Case c, MPI_Comm communicator);
+
+// The case with `initial.from` of the case.yaml (its text) in a run folder: where a run that goes on came from.
+Case with_sources_of(const std::filesystem::path& folder, const std::string& yaml, Case c);
 
 }  // namespace thalweg::driver

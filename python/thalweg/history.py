@@ -8,6 +8,7 @@ from thalweg.errors import RunFolderError
 
 HEAD = re.compile(r"Thalweg (\S+ \(.*?\)|\S+): ")
 AT = re.compile(r" at (\S+) \S+$")   # the time in Session.origin
+AVERAGED = re.compile(r"^analysis\.(\S+): averaging starts at (\S+) \S+$")
 IN_PASSING = re.compile(r"^t (\S+).*?  warning: (.*)$")   # of a progress line
 
 
@@ -20,6 +21,7 @@ class Session:
     changes: list = field(default_factory=list)    # of the case since the session before
     warnings: list = field(default_factory=list)
     remarks: list = field(default_factory=list)    # at its end
+    averaged_from: dict = field(default_factory=dict)   # s, by observer: of means that a restart has begun anew
     outcome: str = ""               # empty: it was killed or has failed, or it is still going
 
 
@@ -48,7 +50,10 @@ def take(line, session):
     for start, words in (("resuming from ", "origin"), ("finished", "outcome"), ("not finished", "outcome")):
         if line.startswith(start):
             setattr(session, words, line.removeprefix(start) if words == "origin" else line)
-    if line.startswith("changed since then: "):
+    anew = AVERAGED.match(line)
+    if anew:
+        session.averaged_from[anew[1]] = float(anew[2])
+    elif line.startswith("changed since then: "):
         session.changes.append(line.removeprefix("changed since then: "))
     elif line.startswith("warning: "):
         session.warnings.append(line.removeprefix("warning: "))

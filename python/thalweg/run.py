@@ -190,9 +190,13 @@ class Run:
 
     def averaged_from(self, observer):
         """Time (s) at which the means of an observer begin: as the run said at its end, which is later than the key in
-        the case where a restart has added or changed the observer; while it is going, by the key."""
+        the case where a restart has added or changed the observer; before that, by run.log and the key."""
         said = ((self.summary or {}).get(observer) or {}).get("mean_from")
-        return float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0) if said is None else said)
+        if said is not None:
+            return float(said)
+        key = float(((self.case.get("analysis") or {}).get(observer) or {}).get("from", 0.0))
+        sessions = sessions_of(self.folder)
+        return max(key, sessions[-1].averaged_from.get(observer, key)) if sessions else key
 
     @property
     def name(self):

@@ -57,7 +57,10 @@ def measured_speeds(run, above):
         )
     far = means["z"] > above
     if not far.any():
-        raise RunFolderError(f"{run.folder}: the means of the fluid hold nothing above {above:.4g} m.")
+        raise RunFolderError(
+            f"{run.folder}: the water is less than {FAR:g} widths of the box deep, and near the bed its speed is not that "
+            "of the side walls alone."
+        )
     section = means["section_velocity"][far, :, 0].mean(axis=0)
     count = len(section)
     return Speeds(float(section.mean()), float(section[(count - 1) // 2:count // 2 + 1].mean()))

@@ -36,6 +36,26 @@ output: {series: {every: 0.001}, checkpoint: {every: 0.005, keep: 2}}
     def state(self):
         return files_below(self.folder), contents_below(self.folder)
 
+    def test_a_run_that_goes_on_from_another_saves_its_start(self):
+        self.run_well("run", self.case, "--out", "first", "--until", "0.01")
+        onward = ("--restart", "first", "--set", "gravity.slope=0.5", "--set", "output.checkpoint.every=0")
+        self.run_well("run", self.case, "--out", "whole", *onward)
+        self.run_well("run", self.case, "--out", "killed", *onward)
+        start, *late = sorted(self.folder.glob("killed/checkpoints/step_*.h5"))
+        for file in (*late, self.folder / "killed/summary.json"):
+            file.unlink()   # as before its first checkpoint
+        self.assertEqual(start.name, self.last_checkpoint("first").name)
+        said = self.resume(*onward[2:], out="killed").stdout
+        self.assertIn(f"resuming from killed/checkpoints/{start.name}", said)
+        self.assertEqual(self.last_checkpoint("killed").read_bytes(), self.last_checkpoint("whole").read_bytes())
+        self.assertEqual((self.folder / "killed/series.csv").read_text(), (self.folder / "whole/series.csv").read_text())
+        # Where not even the start has been saved, there is nothing to begin again from.
+        self.run_well("run", self.case, "--out", "killed", "--overwrite", *onward)
+        for file in (*self.folder.glob("killed/checkpoints/*"), *self.folder.glob("killed/bed.h5"),
+                     self.folder / "killed/summary.json"):
+            file.unlink()
+        self.assert_refused("run", self.case, "--out", "killed", "--resume", *onward[2:], words=["--restart", "--overwrite"])
+
     def test_begins_goes_on_and_leaves_alone_in_any_folder(self):
         self.run_well("run", self.case, "--out", "straight")
         straight = self.last_checkpoint("straight").read_bytes()

@@ -105,6 +105,18 @@ class VtkFiles(made_up.MadeUpFolder):
 
 
 class RunFolder(made_up.MadeUpFolder):
+    def test_means_that_a_restart_has_begun_anew_while_the_run_is_going(self):
+        # There is no summary.json yet; the case says from = 0 by default.
+        (self.folder / "run.log").write_text(
+            "Thalweg 0.1.0 (abc): first\nresolved on 1 rank\n"
+            "Thalweg 0.1.0 (abc): again\nresolved on 1 rank\nresuming from run/checkpoints/step_9.h5 at 2.5 s\n"
+            "analysis.transport_rate: averaging starts at 2.5 s\n")
+        run = thalweg.Run(self.folder)
+        self.assertEqual(run.averaged_from("transport_rate"), 2.5)
+        self.assertEqual(run.averaged_from("stress_balance"), 0.0)
+        (self.folder / "summary.json").write_text('{"transport_rate": {"mean_from": 3.0}}')
+        self.assertEqual(thalweg.Run(self.folder).averaged_from("transport_rate"), 3.0)
+
     def test_the_case_as_numbers(self):
         run = thalweg.Run(self.folder)
         self.assertEqual(run.case["fluid"]["kinematic_viscosity"], 1e-6)   # written 1e-06

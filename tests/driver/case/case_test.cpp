@@ -177,11 +177,17 @@ TEST(Case, WarnsOfABulkViscosityThatMakesTrtUnstable) {
   const std::size_t without = warnings(c).size();
   c.fluid.bulk_relaxation_time = 3.0;
   ASSERT_EQ(warnings(c).size(), without + 1);
+  const auto warned = [&] {
+    const std::vector<std::string> all = warnings(c);
+    return std::any_of(all.begin(), all.end(),
+                       [](const std::string& one) { return one.find("bulk relaxation") != std::string::npos; });
+  };
+  EXPECT_TRUE(warned());
   c.fluid.subgrid_model = lbm::SubgridModel::qr;
-  EXPECT_TRUE(warnings(c).empty());
+  EXPECT_FALSE(warned());
   c.fluid.subgrid_model = lbm::SubgridModel::none;
   c.fluid.collision = lbm::CollisionModel::bgk;
-  for (const std::string& warning : warnings(c)) EXPECT_EQ(warning.find("bulk relaxation"), std::string::npos);
+  EXPECT_FALSE(warned());
 }
 
 // The drag of dense arrays is off by tens of percent where it depends on the relaxation time

@@ -94,6 +94,7 @@ TEST(CommandLine, AnythingElseIsOneSentenceAndExitCodeTwo) {
                                                     {"run", "a.yaml", "--until", "soon"},
                                                     {"run", "a.yaml", "--walltime", "12"},
                                                     {"run", "a.yaml", "--walltime", "00:00:00"},
+                                                    {"run", "a.yaml", "--walltime=-00:00:01"},
                                                     {"run", "a.yaml", "--layout", "2,2"},
                                                     {"run", "a.yaml", "--layout", "0,1,1"},
                                                     {"check"},
