@@ -37,4 +37,19 @@ void require_full_gravity_from(const RunContext& run, double from) {
         "from", fmt::format("{} s is before gravity has its full value; give at least run.ramp, {} s", from, run.ramp));
 }
 
+void require_layer_in_box(const RunContext& run, const std::optional<double>& layer) {
+  const double height = run.box.size.z();
+  if (layer && *layer > height * (1.0 + 1e-9))
+    throw KeyError("layer", fmt::format("a layer is no higher than the box; give at most {:g} m", height));
+}
+
+void require_fine_pixel(const RunContext& run, const std::optional<double>& pixel) {
+  constexpr double fewest_across_a_grain = 4.0;
+  const double widest = run.grains->reference_diameter / fewest_across_a_grain;
+  if (pixel && *pixel > widest * (1.0 + 1e-9))
+    throw KeyError("pixel", fmt::format("the surface of the bed needs at least {:g} pixels across a grain of {:g} m; "
+                                        "give at most {:.6g} m, or leave the key out",
+                                        fewest_across_a_grain, run.grains->reference_diameter, widest));
+}
+
 }  // namespace thalweg::analysis

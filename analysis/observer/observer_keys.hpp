@@ -55,5 +55,7 @@ void describe_every(SectionVisitor& visit, double& every);
 void require_grains(const RunContext& run, const std::string& what);
 void require_ids(const RunContext& run, const std::vector<GlobalId>& ids);  // key grains: each is there, and named once
 void require_full_gravity_from(const RunContext& run, double from);         // run.ramp is over then
+void require_layer_in_box(const RunContext& run, const std::optional<double>& layer);  // m; key layer
+void require_fine_pixel(const RunContext& run, const std::optional<double>& pixel);    // m; key pixel, of a side view
 
 }  // namespace thalweg::analysis

@@ -1,5 +1,7 @@
 #include "analysis/observer/transport_scales.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -47,6 +49,21 @@ void describe_moving_speed(SectionVisitor& visit, std::optional<double>& moving_
                          "settling speed; without a fluid of sqrt(g d), in a model fluid of v_0",
               .at_least = 0.0,
               .example = 1e-3});
+}
+
+std::optional<std::string> fast_moving_speed(const char* section, const std::optional<double>& moving_speed,
+                                             const RunContext& run) {
+  if (!moving_speed || !run.fluid || !run.grains) return std::nullopt;
+  const TransportScales scales = transport_scales(run);
+  constexpr double lightest = 0.5;  // s - 1; grains that hardly sink are moved by slow water, too
+  if (!(scales.weight() >= lightest * scales.gravity) || scales.flux() == 0.0) return std::nullopt;
+  // A sphere settles no faster: a drag coefficient of 0.4.
+  const double settling = std::sqrt(4.0 / (3.0 * 0.4)) * scales.flux() / scales.grain_diameter;
+  if (*moving_speed <= settling) return std::nullopt;
+  return fmt::format(
+      "analysis.{0}.moving_speed = {1:g} m/s is more than grains of {2:g} m settle with, at most {3:.2g} m/s, so that "
+      "hardly any count as moving: consider analysis.{0}.moving_speed: {4:.2g}, which is the default.",
+      section, *moving_speed, scales.grain_diameter, settling, scales.moving_speed());
 }
 
 }  // namespace thalweg::analysis

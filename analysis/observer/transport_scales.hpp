@@ -4,6 +4,7 @@
 #include "analysis/observer/observer_keys.hpp"
 
 #include <optional>
+#include <string>
 
 namespace thalweg::analysis {
 
@@ -27,5 +28,9 @@ TransportScales transport_scales(const RunContext& run);  // of a run with grain
 
 // The key moving_speed (m/s), whose default is that of the scales.
 void describe_moving_speed(SectionVisitor& visit, std::optional<double>& moving_speed);
+
+// A warning where grains in a fluid count as moving only if they are as fast as they could settle; else nothing.
+std::optional<std::string> fast_moving_speed(const char* section, const std::optional<double>& moving_speed,
+                                             const RunContext& run);
 
 }  // namespace thalweg::analysis

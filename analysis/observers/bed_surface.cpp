@@ -233,12 +233,19 @@ void describe(SectionVisitor& visit, BedSurfaceKeys& keys) {
              {.unit = "s", .meaning = "a pixel is static after one grain has covered it for this long", .above = 0.0});
 }
 
-void check(const BedSurfaceKeys&, const RunContext& run) {
+void check(const BedSurfaceKeys& keys, const RunContext& run) {
   require_grains(run, "measure");
   if (run.box.periodic[2])
     throw KeyError("",
                    "the bed height is measured from the bottom, but z is periodic; remove the section or give "
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
+  constexpr double thickest = 5.0;  // grains; an average over more has no surface
+  const double grain = std::max(run.grains->reference_diameter, run.grains->largest_diameter);
+  if (keys.layer && *keys.layer > thickest * grain * (1.0 + 1e-9))
+    throw KeyError("layer", fmt::format("the solid fraction is averaged over about a grain, which is up to {:g} m "
+                                        "wide; give at most {:.6g} m, or leave the key out",
+                                        grain, thickest * grain));
+  require_fine_pixel(run, keys.pixel);
 }
 
 std::optional<BedFlow> bed_flow(const RunContext& run) {

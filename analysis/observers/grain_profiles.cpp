@@ -226,6 +226,8 @@ void describe(SectionVisitor& visit, GrainProfilesKeys& keys) {
        .example = 2.5e-3});
 }
 
+void check(const GrainProfilesKeys& keys, const RunContext& run) { require_layer_in_box(run, keys.layer); }
+
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<GrainProfiles>(system.communicator, system.decomposition, 0.5 * run.grains->largest_diameter,

@@ -45,6 +45,7 @@ struct GrainProfilesKeys {
   bool operator==(const GrainProfilesKeys&) const = default;
 };
 void describe(SectionVisitor& visit, GrainProfilesKeys& keys);
+void check(const GrainProfilesKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const GrainProfilesKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 // It keeps sums by layer, nothing of a grain.

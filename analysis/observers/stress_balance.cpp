@@ -257,6 +257,7 @@ void check(const StressBalanceKeys& keys, const RunContext& run) {
     throw KeyError("",
                    "stress is summed from the top down, but z is periodic; remove the section or give "
                    "domain.boundaries bottom and top");
+  require_layer_in_box(run, keys.layer);
   require_full_gravity_from(run, keys.from);
 }
 

@@ -216,6 +216,10 @@ void describe(SectionVisitor& visit, TransportRateKeys& keys) {
 
 void check(const TransportRateKeys&, const RunContext& run) { require_grains(run, "measure"); }
 
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run) {
+  return fast_moving_speed(TransportRateKeys::section, keys.moving_speed, run);
+}
+
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system) {
   return std::make_unique<TransportRate>(system.communicator, transport_scales(run), keys, run.grains->recirculation);

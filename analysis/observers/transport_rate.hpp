@@ -39,6 +39,7 @@ struct TransportRateKeys {
 };
 void describe(SectionVisitor& visit, TransportRateKeys& keys);
 void check(const TransportRateKeys& keys, const RunContext& run);
+std::optional<std::string> warning(const TransportRateKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const TransportRateKeys& keys, const RunContext& run,
                                         const RunningSystem& system);
 ObserverMemory memory_of(const TransportRateKeys& keys, const RunContext& run, const RunSize& size);

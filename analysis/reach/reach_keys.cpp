@@ -39,7 +39,7 @@ void describe(SectionVisitor& visit, ReachKeys& keys) {
                 fmt::format("a record holds at least one observation; give at least {:g} s", keys.every));
 }
 
-void check(const ReachKeys&, const RunContext& run) {
+void check(const ReachKeys& keys, const RunContext& run) {
   require_grains(run, "count");
   if (run.box.periodic[2])
     throw KeyError("",
@@ -47,6 +47,11 @@ void check(const ReachKeys&, const RunContext& run) {
                    "domain.boundaries a bottom and a top, for example no_slip and free_slip");
   if (!run.grains->any_free())
     throw KeyError("", "no grain is free to move, so there is no transport; remove the section");
+  require_fine_pixel(run, keys.pixel);
+}
+
+std::optional<std::string> warning(const ReachKeys& keys, const RunContext& run) {
+  return fast_moving_speed(ReachKeys::section, keys.moving_speed, run);
 }
 
 std::unique_ptr<Observer> make_observer(const ReachKeys& keys, const RunContext& run, const RunningSystem& system) {

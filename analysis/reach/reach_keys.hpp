@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace thalweg::analysis {
 
@@ -26,6 +27,7 @@ struct ReachKeys {
 };
 void describe(SectionVisitor& visit, ReachKeys& keys);
 void check(const ReachKeys& keys, const RunContext& run);
+std::optional<std::string> warning(const ReachKeys& keys, const RunContext& run);
 std::unique_ptr<Observer> make_observer(const ReachKeys& keys, const RunContext& run, const RunningSystem& system);
 ObserverMemory memory_of(const ReachKeys& keys, const RunContext& run, const RunSize& size);
 
