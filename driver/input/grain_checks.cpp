@@ -8,6 +8,7 @@
 #include "driver/estimate/obstacles.hpp"
 #include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/case_checks.hpp"
+#include "driver/warnings/unit_warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,13 @@ namespace {
 
 constexpr const char* sub_steps_key = "coupling.grain_steps_per_fluid_step";
 
+// What to do about grains wider than any in SI units; "" for others.
+std::string in_millimetres(const Case& c, double diameter) {
+  if (c.system != SystemKind::resolved || diameter <= largest_boulder) return "";
+  return fmt::format(", or, as diameters are in m and {0:g} looks like {0:g} mm, grains of {1:g} m", diameter,
+                     1e-3 * diameter);
+}
+
 void check_room(const Case& c, const io::YamlDocument& document) {
   const std::array<bool, 3> periodic = periodic_axes(c.domain);
   const double diameter = largest_diameter(c);
@@ -26,9 +34,11 @@ void check_room(const Case& c, const io::YamlDocument& document) {
     const double least = (periodic[static_cast<std::size_t>(axis)] ? 2.0 : 1.0) * diameter;
     if (c.domain.size[axis] < least)
       throw document.error(
-          "domain.size", fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({})",
-                                     c.domain.size[axis], axis_name[axis], diameter, least,
-                                     least > diameter ? "two diameters of a periodic axis" : "one diameter"));
+          "domain.size",
+          fmt::format("the {} m along {} are too narrow for grains of {} m; give at least {:.6g} m ({}){}",
+                      c.domain.size[axis], axis_name[axis], diameter, least,
+                      least > diameter ? "two diameters of a periodic axis" : "one diameter",
+                      in_millimetres(c, diameter)));
     const double extent = 1.005 * largest_extent(c);
     if (periodic[static_cast<std::size_t>(axis)] && c.domain.size[axis] < extent)
       throw document.error("domain.size",

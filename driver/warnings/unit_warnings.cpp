@@ -14,21 +14,23 @@ namespace thalweg::driver {
 
 namespace {
 
-constexpr double largest_boulder = 0.5;   // m; a bed of larger ones in a resolved flow is a bed in millimetres
 constexpr double lightest_grain = 300.0;  // kg/m^3, of sediment in SI units
 constexpr double roughest_contact = 1.5;  // 1; friction of dry solids is below, an angle in degrees above
 constexpr double widest_cell = 0.05;      // m
-constexpr double most_cells = 1e11, fewest_cells_across = 10.0;      // 1: of a box in metres
-constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;    // kg/m^3, m^2/s
-constexpr double weakest_on_earth = 9.0, strongest_on_earth = 10.0;  // m/s^2
-constexpr double thickest_fluid = 0.1;                               // m^2/s
+constexpr double most_cells = 1e11, fewest_cells_across = 10.0;       // 1: of a box in metres
+constexpr double lightest_liquid = 500.0, thickest_liquid = 1e-2;     // kg/m^3, m^2/s
+constexpr double lightest_water = 990.0, heaviest_water = 1030.0;     // kg/m^3, fresh and of the sea
+constexpr double thinnest_water = 0.88e-3, thickest_water = 1.15e-3;  // Pa s, from 25 to 15 degrees
+constexpr double weakest_on_earth = 9.0, strongest_on_earth = 10.0;   // m/s^2
+constexpr double thickest_fluid = 0.1;                                // m^2/s
 constexpr int density_digits = 6;
 constexpr double steepest_friction = 60.0;  // degrees
 
 // m, of grains that are wider than any in SI units.
 std::optional<double> diameter_of_boulders(const Case& c) {
   std::optional<double> diameter;
-  if (c.system == SystemKind::resolved && !c.grains.empty()) diameter = reference_grain(c).diameter;
+  if (c.system == SystemKind::resolved && !c.grains.empty())
+    diameter = beds::median_by_mass(represented_sizes(c), c.disks.has_value());
   if (c.system == SystemKind::continuum) diameter = c.continuum.grains.diameter;
   return diameter && *diameter > largest_boulder ? diameter : std::nullopt;
 }
@@ -40,6 +42,18 @@ Warnings lengths_in_millimetres(const Case& c) {
   return {fmt::format(
       "The grains are {:.4g} m wide, which looks like millimetres: lengths are in m, and {:g} mm is {:g} m.", diameter,
       diameter, 1e-3 * diameter)};
+}
+
+// The key beside grains in metres; they scale what is estimated, as if they were so wide.
+Warnings reference_in_millimetres(const Case& c) {
+  if (c.system != SystemKind::resolved || c.grains.empty() || diameter_of_boulders(c)) return {};
+  const double diameter = c.analysis.reference_diameter.value_or(0.0);
+  if (diameter <= largest_boulder) return {};
+  return {{fmt::format("analysis.reference_diameter = {0:g} m looks like {0:g} mm, which is {1:g} m", diameter,
+                       1e-3 * diameter),
+           {{{exact_change("analysis.reference_diameter", 1e-3 * diameter, 6,
+                           [](Case& other, double to) { other.analysis.reference_diameter = to; })},
+             {}}}}};
 }
 
 // A liquid in SI units in cells so wide: metres of it cannot be resolved.
@@ -101,6 +115,20 @@ Warnings viscosity_in_square_millimetres(const Case& c) {
                                  to;
                            })},
              {}}}}};
+}
+
+// Water has 1e-3 Pa s; oils so viscous are lighter, and glycerine is heavier.
+Warnings viscosity_in_pascal_seconds(const Case& c) {
+  const bool column = c.system == SystemKind::continuum;
+  const double viscosity = column ? c.continuum.fluid.kinematic_viscosity : c.fluid.kinematic_viscosity,
+               density = column ? c.continuum.fluid.density : c.fluid.density;
+  if (!(column || has_fluid(c)) || viscosity < thinnest_water || viscosity > thickest_water ||
+      density < lightest_water || density > heaviest_water)
+    return {};
+  return {fmt::format(
+      "A kinematic viscosity of {0:g} m^2/s looks like that of water in Pa s, which divided by the density is {1:g} "
+      "m^2/s: give that as fluid.kinematic_viscosity, unless the fluid is so viscous.",
+      viscosity, viscosity / density)};
 }
 
 Warnings densities_in_grams(const Case& c) {
@@ -214,14 +242,25 @@ Warnings friction_in_degrees(const Case& c) {
 }  // namespace
 
 bool has_other_lengths(const Case& c) {
-  return !lengths_in_millimetres(c).empty() || !box_in_millimetres(c).empty() || !many_cells_in_millimetres(c).empty();
+  return !lengths_in_millimetres(c).empty() || !reference_in_millimetres(c).empty() || !box_in_millimetres(c).empty() ||
+         !many_cells_in_millimetres(c).empty();
 }
 
 std::vector<WarningRule> unit_rules() {
-  return {lengths_in_millimetres, box_in_millimetres,     many_cells_in_millimetres,
-          gravity_in_centimetres, gravity_in_millimetres, viscosity_in_square_millimetres,
-          densities_in_grams,     column_in_grams,        liquid_in_grams,
-          slope_in_degrees,       friction_in_degrees,    angles_in_degrees};
+  return {lengths_in_millimetres,
+          reference_in_millimetres,
+          viscosity_in_pascal_seconds,
+          box_in_millimetres,
+          many_cells_in_millimetres,
+          gravity_in_centimetres,
+          gravity_in_millimetres,
+          viscosity_in_square_millimetres,
+          densities_in_grams,
+          column_in_grams,
+          liquid_in_grams,
+          slope_in_degrees,
+          friction_in_degrees,
+          angles_in_degrees};
 }
 
 }  // namespace thalweg::driver
