@@ -18,15 +18,6 @@ namespace {
 constexpr double most_boxes_long = 100.0;  // along a periodic axis, where every box more is one more image
 constexpr double most_boxes_away = 1e6;
 
-std::string shape_key(const Case& c, std::size_t solid) {
-  return fmt::format("solids.{}.{}", solid, c.solids[solid].sphere ? "sphere.radius" : "stl");
-}
-
-std::string smaller_text(const SolidCase& solid) {
-  return solid.sphere ? "give the radius in m"
-                      : fmt::format("if the file is in millimetres, give scale: {:g}", 1e-3 * solid.scale);
-}
-
 // A sphere in `around` fields of equal angles round the z axis and half as many from pole to pole.
 TriangleMesh sphere_surface(const SphereCase& sphere) {
   constexpr int around = 48, rows = around / 2;
@@ -50,6 +41,15 @@ TriangleMesh sphere_surface(const SphereCase& sphere) {
 }
 
 }  // namespace
+
+std::string shape_key(const Case& c, std::size_t solid) {
+  return fmt::format("solids.{}.{}", solid, c.solids[solid].sphere ? "sphere.radius" : "stl");
+}
+
+std::string smaller_text(const SolidCase& solid) {
+  return solid.sphere ? "give the radius in m"
+                      : fmt::format("if the file is in millimetres, give scale: {:g}", 1e-3 * solid.scale);
+}
 
 void fill_in_surfaces(Case& c, const io::YamlDocument& document, const Ranks& ranks) {
   for (std::size_t n = 0; n < c.solids.size(); ++n) {

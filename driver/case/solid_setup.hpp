@@ -9,6 +9,7 @@
 #include "io/text/yaml_document.hpp"
 
 #include <set>
+#include <string>
 #include <vector>
 
 namespace thalweg::driver {
@@ -23,6 +24,10 @@ bodies::Extent extent_of(const SolidCase& solid);
 // Throws InputError where a solid lies so far from the box, or is so much longer than a periodic box, that it cannot be
 // meant.
 void check_solid_extents(const Case& c, const io::YamlDocument& document);
+
+// The key that gives a solid its size, and what to do where it is too large.
+std::string shape_key(const Case& c, std::size_t solid);
+std::string smaller_text(const SolidCase& solid);
 
 // Shapes in lattice units, at the start, in the order of the case.
 std::vector<bodies::SolidShape> solid_shapes(const Case& c);

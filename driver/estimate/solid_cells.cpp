@@ -39,6 +39,18 @@ Columns columns_of(const SolidCase& solid, const Case& c, double step_x, double 
   return columns;
 }
 
+// The columns in parts no wider than the box, along whose periodic axes there may be many of them.
+std::vector<Columns> parts_of(const Columns& whole, const std::array<int, 2>& most) {
+  std::vector<Columns> parts;
+  for (auto i = whole.first[0]; i <= whole.last[0]; i += most[0])
+    for (auto j = whole.first[1]; j <= whole.last[1]; j += most[1]) {
+      Columns& part = parts.emplace_back(whole);
+      part.first = {i, j};
+      part.last = {std::min(whole.last[0], i + most[0] - 1), std::min(whole.last[1], j + most[1] - 1)};
+    }
+  return parts;
+}
+
 using Crossings = std::map<std::pair<std::int64_t, std::int64_t>, std::vector<double>>;  // m, by column
 
 // Heights at which the lines cross a triangle.
@@ -106,20 +118,25 @@ bool is_inside(std::int64_t n, int size, bool periodic) { return periodic || (n 
 SolidCells::SolidCells(const Case& c) : periodic_(periodic_axes(c.domain)) {
   const Index3 cells = cells_of(c.domain);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    size_[axis] = std::min(cells[axis], most_along_an_axis);
+    size_[axis] = std::clamp(cells[axis], 1, most_along_an_axis);
     step_[static_cast<int>(axis)] = c.domain.size[static_cast<int>(axis)] / size_[axis];
   }
   covered_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
                   static_cast<std::size_t>(size_[2]));
+  const auto cover = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+    if (is_inside(i, size_[0], periodic_[0]) && is_inside(j, size_[1], periodic_[1]) &&
+        is_inside(k, size_[2], periodic_[2]))
+      covered_[index({wrapped(i, size_[0]), wrapped(j, size_[1]), wrapped(k, size_[2])})] = true;
+    return true;
+  };
   for (const SolidCase& solid : c.solids)
-    for_points_inside(solid, columns_of(solid, c, step_.x(), step_.y()), step_.z(),
-                      [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-                        if (is_inside(i, size_[0], periodic_[0]) && is_inside(j, size_[1], periodic_[1]) &&
-                            is_inside(k, size_[2], periodic_[2]))
-                          covered_[index({wrapped(i, size_[0]), wrapped(j, size_[1]), wrapped(k, size_[2])})] = true;
-                        return true;
-                      });
+    for (const Columns& part : parts_of(columns_of(solid, c, step_.x(), step_.y()), {size_[0], size_[1]})) {
+      for_points_inside(solid, part, step_.z(), cover);
+      if (!any_open()) return;
+    }
 }
+
+bool SolidCells::any_open() const { return std::find(covered_.begin(), covered_.end(), false) != covered_.end(); }
 
 std::size_t SolidCells::index(const Index3& cell) const {
   return static_cast<std::size_t>(cell[0]) +

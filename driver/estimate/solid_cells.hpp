@@ -18,6 +18,7 @@ public:
 
   Index3 size() const { return size_; }
   bool covered(const Index3& cell) const { return covered_[index(cell)]; }
+  bool any_open() const;
   double height(int k) const { return (k + 0.5) * step_.z(); }  // m, of a layer
 
   // Height (m) of the lowest point between these corners (m) that lies in no solid, down to a layer of cells; infinite

@@ -8,6 +8,7 @@
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/flow_estimate.hpp"
 #include "driver/estimate/grain_weight.hpp"
+#include "driver/estimate/solid_cells.hpp"
 #include "driver/input/grain_checks.hpp"
 #include "driver/input/run_context.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
@@ -28,26 +29,6 @@ constexpr double fewest_cells_per_radius = 0.87;
 // A component of the random eddies at the start stays below this many times its root mean square nearly everywhere.
 constexpr double strongest_gust = 4.0;
 constexpr double most_cells_along_axis = 1e6;
-
-void check_whole_cells(const DomainCase& domain, const io::YamlDocument& document) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cells = domain.size[axis] / domain.spacing;
-    const double whole = std::round(cells);
-    if (cells > most_cells_along_axis)
-      throw document.error("domain.spacing",
-                           fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
-                                       "larger spacing in m",
-                                       domain.size[axis], axis_name[axis], cells, most_cells_along_axis));
-    if (whole >= 1.0 && std::abs(cells - whole) <= whole_number_tolerance * whole) continue;
-    const double shorter = std::floor(cells) * domain.spacing, longer = std::ceil(cells) * domain.spacing;
-    const std::string sizes =
-        shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer) : fmt::format("at least {:.9g} m", longer);
-    throw document.error("domain.size",
-                         fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
-                                     "cells, {}",
-                                     domain.size[axis], axis_name[axis], cells, domain.spacing, sizes));
-  }
-}
 
 void check_resolution(const Case& c, const io::YamlDocument& document) {
   if (c.grains.empty() || c.system != SystemKind::resolved) return;
@@ -87,6 +68,12 @@ void check_motion_in_fluid(const Case& c, const io::YamlDocument& document, std:
                                        "{}, where the box is periodic and {:g} m long; give a longer box",
                                        reach, axis_name[axis], c.domain.size[axis]));
   }
+}
+
+// m, the longest side.
+double length_of(const SolidCase& solid) {
+  const bodies::Extent extent = extent_of(solid);
+  return (extent.upper - extent.lower).maxCoeff();
 }
 
 void check_solids(const Case& c, const io::YamlDocument& document) {
@@ -232,11 +219,17 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
                          "reduced");
 }
 
-// The region before an open face in which grains must leave, so that none comes near it: two diameters deep.
-beds::RegionKeys region_before(const Case& c, std::size_t face) {
+// m, of free grains, those of supplies among them.
+double longest_free_grain(const Case& c) {
+  double longest = 0.0;
+  for (const std::size_t p : free_populations(c)) longest = std::max(longest, c.grains[p].largest_extent());
+  return longest;
+}
+
+// The region before an open face, so deep (m).
+beds::RegionKeys region_before(const Case& c, std::size_t face, double depth) {
   beds::RegionKeys region{Vec3::Zero(), c.domain.size};
   const auto axis = static_cast<Eigen::Index>(face / 2);
-  const double depth = 2.0 * largest_extent(c);
   if (face % 2 == 0)
     region.upper[axis] = std::min(depth, c.domain.size[axis]);
   else
@@ -244,16 +237,15 @@ beds::RegionKeys region_before(const Case& c, std::size_t face) {
   return region;
 }
 
-// True if a sink takes all grains that come near an open face; it may be thinner than region_before().
-bool has_sink_at(const Case& c, std::size_t face) {
-  beds::RegionKeys needed = region_before(c, face);
-  const auto axis = static_cast<Eigen::Index>(face / 2);
-  const double spared = 0.5 * (needed.upper[axis] - needed.lower[axis]);
-  (face % 2 == 0 ? needed.upper : needed.lower)[axis] += face % 2 == 0 ? -spared : spared;
-  return std::any_of(c.sinks.begin(), c.sinks.end(), [&needed](const beds::SinkKeys& sink) {
-    return (sink.region.lower.array() <= needed.lower.array()).all() &&
-           (sink.region.upper.array() >= needed.upper.array()).all();
-  });
+// The first sink that takes all grains that come so near (m) an open face.
+std::optional<std::size_t> sink_before(const Case& c, std::size_t face, double depth) {
+  const beds::RegionKeys needed = region_before(c, face, depth);
+  for (std::size_t n = 0; n < c.sinks.size(); ++n) {
+    const beds::RegionKeys& region = c.sinks[n].region;
+    if ((region.lower.array() <= needed.lower.array()).all() && (region.upper.array() >= needed.upper.array()).all())
+      return n;
+  }
+  return std::nullopt;
 }
 
 // The key that a case gives a face by: its own, or that of its axis.
@@ -304,8 +296,16 @@ void check_open_faces(const Case& c, const io::YamlDocument& document) {
     const coupling::FaceKeys& open = c.domain.faces[face];
     const double inwards = (face % 2 == 0 ? 1.0 : -1.0) * open.velocity[static_cast<Eigen::Index>(face / 2)];
     const bool pushes_away = open.type == lbm::FaceType::velocity_inlet && inwards > 0.0;
-    if (!lbm::is_open(open.type) || pushes_away || has_sink_at(c, face)) continue;
-    const beds::RegionKeys region = region_before(c, face);
+    const double longest = longest_free_grain(c), least = longest * (1.0 - whole_number_tolerance);
+    if (!lbm::is_open(open.type) || pushes_away || sink_before(c, face, least)) continue;
+    if (const std::optional<std::size_t> thin = sink_before(c, face, 0.0))
+      throw document.error(
+          fmt::format("sinks.{}.region", *thin),
+          fmt::format("grains would jam at {}, through which only the water leaves, as the sink before it is less deep "
+                      "than the longest free grain, {:g} m; give a region of at least that depth along {}, better of "
+                      "twice as much",
+                      key_of_face(face, document), longest, axis_name[face / 2]));
+    const beds::RegionKeys region = region_before(c, face, 2.0 * longest);
     const std::string axis = axis_name[face / 2];
     throw document.error(
         key_of_face(face, document),
@@ -354,6 +354,38 @@ void check_observers(const Case& c, const io::YamlDocument& document) {
 
 }  // namespace
 
+void check_whole_cells(const DomainCase& domain, int axes, const io::YamlDocument& document) {
+  for (int axis = 0; axis < axes; ++axis) {
+    const double cells = domain.size[axis] / domain.spacing;
+    const double whole = std::round(cells);
+    if (cells > most_cells_along_axis)
+      throw document.error("domain.spacing",
+                           fmt::format("the {} m along {} would be {:.3g} cells, more than {:.0f}; give a "
+                                       "larger spacing in m",
+                                       domain.size[axis], axis_name[axis], cells, most_cells_along_axis));
+    if (whole >= 1.0 && std::abs(cells - whole) <= whole_number_tolerance * whole) continue;
+    const double shorter = std::floor(cells) * domain.spacing, longer = std::ceil(cells) * domain.spacing;
+    const std::string sizes =
+        shorter > 0.0 ? fmt::format("{:.9g} or {:.9g} m", shorter, longer) : fmt::format("at least {:.9g} m", longer);
+    throw document.error("domain.size",
+                         fmt::format("the {} m along {} are {:.6g} cells of {} m; make it a whole number of "
+                                     "cells, {}",
+                                     domain.size[axis], axis_name[axis], cells, domain.spacing, sizes));
+  }
+}
+
+void check_solid_room(const Case& c, const io::YamlDocument& document) {
+  check_solid_extents(c, document);
+  if (!has_fluid(c) || c.solids.empty() || SolidCells(c).any_open()) return;
+  const auto longest = std::max_element(c.solids.begin(), c.solids.end(), [](const SolidCase& a, const SolidCase& b) {
+    return length_of(a) < length_of(b);
+  });
+  throw document.error(shape_key(c, static_cast<std::size_t>(longest - c.solids.begin())),
+                       fmt::format("{} the box and leave{} no room for the fluid; {}, or a larger domain.size in m",
+                                   c.solids.size() == 1 ? "the solid fills" : "the solids fill",
+                                   c.solids.size() == 1 ? "s" : "", smaller_text(*longest)));
+}
+
 void check_column(const Case& c, const io::YamlDocument& document) {
   const Vec3 gravity = gravity_vector(c.gravity);
   if (gravity.y() != 0.0)
@@ -362,7 +394,7 @@ void check_column(const Case& c, const io::YamlDocument& document) {
 }
 
 void check_box(const Case& c, const io::YamlDocument& document) {
-  check_whole_cells(c.domain, document);
+  check_whole_cells(c.domain, 3, document);
   check_resolution(c, document);
   check_that_grains_fit(c, document);
 }

@@ -19,6 +19,13 @@ void at_place(const io::YamlDocument& document, const std::string& section, cons
   }
 }
 
+// Asks for a whole number of cells along the first so many axes.
+void check_whole_cells(const DomainCase& domain, int axes, const io::YamlDocument& document);
+
+// Asks that solids are no longer than can be followed and, in a fluid, leave it some of the box: before the estimates,
+// which take them apart.
+void check_solid_room(const Case& c, const io::YamlDocument& document);
+
 // The part of check_case() that asks for whole cells, and for cells and room for the grains: without them nothing can
 // be estimated.
 void check_box(const Case& c, const io::YamlDocument& document);

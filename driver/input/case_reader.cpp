@@ -121,6 +121,7 @@ Case read_case(const std::filesystem::path& path, const std::vector<std::string>
   for (std::optional<std::string>* source : {&c.initial.from.run, &c.initial.from.grains, &c.initial.from.fluid})
     if (*source && !(*source)->empty()) *source = document.path_beside(**source, "initial.from");
   fill_in_surfaces(c, document, ranks);
+  check_solid_room(c, document);
   if (c.system != SystemKind::continuum) complete(c);
   if (!has_fluid(c) && !c.run.time_step)
     c.run.time_step = std::min(shortest_contact(c) / steps_per_contact, longest_contact_step(c));

@@ -5,6 +5,7 @@
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/reference_grain.hpp"
+#include "driver/input/case_checks.hpp"
 #include "io/text/section_reader.hpp"
 
 #include <fmt/format.h>
@@ -97,6 +98,7 @@ void make_bed(Case& c, const io::YamlDocument& document, bool height_follows, co
   if (height_follows) refuse_circles(c, document);
   fill_in_grains(c, document, known, ranks);
   fill_in_surfaces(c, document, ranks);
+  check_solid_room(c, document);
 }
 
 // Throws where the flow that the section asks for does not follow from a slope over a bed.
@@ -160,6 +162,7 @@ FlowFilledIn derive_flow(io::YamlDocument& document, const KnownBeds& known, con
   Case c;
   io::read_document(tried, c);  // refuses misspelt keys, before any is missed
   const FlowFilledIn question = question_of(document);
+  check_whole_cells(c.domain, question.height ? 2 : 3, document);
   make_bed(c, tried, question.height, known, ranks);
   refuse_other_flows(c, question, document);
   const ReferenceGrain grain = reference_grain(c);

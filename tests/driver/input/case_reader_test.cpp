@@ -4,6 +4,7 @@
 #include "driver/estimate/filled_in.hpp"
 #include "tests/driver/case_texts.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <yaml-cpp/yaml.h>
@@ -332,6 +333,21 @@ TEST(CaseReader, TheDefaultsExplainChoicesOnce) {
   EXPECT_NE(first, std::string::npos);
   EXPECT_EQ(all.find(explanation, first + 1), std::string::npos);
   EXPECT_NE(defaults_yaml("domain.boundaries.top").find(explanation), std::string::npos);
+}
+
+// The room of a sink before an outlet is that of the grains that come there: a fixed boulder does not.
+TEST(CaseReader, MeasuresASinkByTheLongestFreeGrain) {
+  const std::vector<std::string> reach = {
+      "domain.boundaries={x_low: no_slip, x_high: pressure_outlet, y: no_slip, bottom: no_slip, top: free_slip}",
+      "grains.1={diameter: 9.0e-3, density: 2550, placement: {positions: [[0.02, 0.005, 0.06]]}, fixed: true}"};
+  const auto with_sink = [&](double depth) {
+    std::vector<std::string> settings = reach;
+    settings.push_back(
+        fmt::format("sinks=[{{region: {{lower: [{:.9g}, 0, 0], upper: [0.06, 0.0105, 0.075]}}}}]", 0.06 - depth));
+    return settings;
+  };
+  EXPECT_NO_THROW(testing::read_text(testing::flume, with_sink(4.95e-3)));
+  EXPECT_THROW(testing::read_text(testing::flume, with_sink(4.9e-3)), InputError);
 }
 
 }  // namespace
