@@ -95,13 +95,14 @@ Warnings unstable_collision(const Case& c) {
        {{subgrid_changes(c, "qr", lbm::SubgridModel::qr), {}}, {{excess_change(c, calm_excess, Rounding::up)}, {}}}}};
 }
 
-// With trt the odd modes relax in Lambda/(tau - 1/2) steps, about 20 at this excess. Where they hardly do they hide the strain
-// in the second moments, from which shear rate and eddy viscosity follow (docs/stability.md).
+// With trt the odd modes relax in Lambda/(tau - 1/2) steps, about 20 at this excess. Where they hardly do they hide the
+// strain in the second moments, from which shear rate and eddy viscosity follow (docs/stability.md).
 constexpr double least_excess_of_trt = 0.01;
 
 Warnings slow_odd_modes(const Case& c) {
   const double excess = relaxation_time(c) - 0.5;
-  if (c.fluid.collision != lbm::CollisionModel::trt || excess >= least_excess_of_trt * (1.0 - limit_rounding)) return {};
+  if (c.fluid.collision != lbm::CollisionModel::trt || excess >= least_excess_of_trt * (1.0 - limit_rounding))
+    return {};
   Remedy by_default{collision_change("trt_at_bodies", lbm::CollisionModel::trt_at_bodies)};
   if (!c.fluid.subgrid().on())
     for (const Change& change : subgrid_changes(c, "qr", lbm::SubgridModel::qr)) by_default.push_back(change);
@@ -369,6 +370,7 @@ std::vector<WarningRule> rules_for(const Case& c) {
                                  unlike_clumps,
                                  late_supplies,
                                  sliding_bed,
+                                 with_fluid<other_start>,
                                  with_fluid<fast_flow>,
                                  with_fluid<compression>,
                                  with_fluid<unstable_collision>,

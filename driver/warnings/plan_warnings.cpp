@@ -43,6 +43,33 @@ Warnings frequent_output(const Case& c) {
   return found;
 }
 
+// Frames at the start alone, and no row: nothing is written before the first interval has passed.
+Warnings rare_output(const Case& c) {
+  Warnings found;
+  const auto look = [&](const std::string& key, double every, const char* what, const Setter& set) {
+    if (every > c.run.until * (1.0 + 1e-9))
+      found.push_back({fmt::format("output.{} = {:g} s is longer than the run of {:g} s, so there is {}", key, every,
+                                   c.run.until, what),
+                       {{{number_change("output." + key, c.run.until, 3, Rounding::down, set)}, {}}}});
+  };
+  constexpr const char* frame = "no frame after that of the start";
+  look("series.every", c.output.series.every, "no row after that of the start",
+       [](Case& other, double to) { other.output.series.every = to; });
+  if (has_fluid(c)) {
+    look("fluid.every", c.output.fluid.every, frame, [](Case& other, double to) { other.output.fluid.every = to; });
+    for (std::size_t n = 0; n < c.output.fluid_parts.size(); ++n)
+      look(fmt::format("fluid_parts.{}.every", n), c.output.fluid_parts[n].every, frame,
+           [n](Case& other, double to) { other.output.fluid_parts[n].every = to; });
+  }
+  if (!c.grains.empty()) {
+    look("grains.every", c.output.grains.every, frame, [](Case& other, double to) { other.output.grains.every = to; });
+    for (std::size_t n = 0; n < c.output.grain_parts.size(); ++n)
+      look(fmt::format("grain_parts.{}.every", n), c.output.grain_parts[n].every, frame,
+           [n](Case& other, double to) { other.output.grain_parts[n].every = to; });
+  }
+  return found;
+}
+
 Change until_change(double least) {
   return number_change("run.until", least, 2, Rounding::up, [](Case& other, double to) { other.run.until = to; });
 }
@@ -233,6 +260,8 @@ double fitting_shear_velocity(Case c) {
   return *c.initial.fluid.log_profile->shear_velocity;
 }
 
+}  // namespace
+
 Warnings other_start(const Case& c) {
   const FlowEstimate flow = flow_estimate(c);
   if (flow.drive == FlowCause::none || !c.initial.fluid.log_profile || c.filled_in.profile.shear_velocity) return {};
@@ -252,10 +281,8 @@ Warnings other_start(const Case& c) {
            "a start with the shear velocity it is driven towards, and the step that suits it"}};
 }
 
-}  // namespace
-
 std::vector<WarningRule> plan_rules() {
-  return {short_run, early_averages, sudden_inlet, unsettled_grains, other_start, long_ramp, frequent_output};
+  return {short_run, early_averages, sudden_inlet, unsettled_grains, long_ramp, frequent_output, rare_output};
 }
 
 }  // namespace thalweg::driver

@@ -219,6 +219,10 @@ VARIATIONS = [
         ["is made with the rows of the series", "analysis.transport_rate.every: 0.3"],
     ),
     (WATER, ["gravity.magnitude=9810"], ["looks like 9810 mm/s^2, which is 9.81", "gravity.magnitude: 9.81"]),
+    (
+        WATER, ["output={grains: {every: 31}}"],
+        ["output.grains.every = 31 s is longer than the run of 30 s", "output.grains.every: 30"],
+    ),
     (WATER, ["fluid.kinematic_viscosity=1"], ["looks like 1 mm^2/s", "fluid.kinematic_viscosity: 1e-06"]),
     (WATER, ["gravity={vector: [9.8, 0, -981]}"], ["cm/s^2", "gravity.vector: [0.098, 0, -9.81]"]),
     (

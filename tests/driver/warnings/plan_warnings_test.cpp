@@ -160,6 +160,33 @@ TEST(Warnings, OfGrainsThatStillFall) {
   EXPECT_TRUE(any_contains(warnings(c), "The highest grains fall"));
 }
 
+// Frames are written at the start and after each interval.
+TEST(Warnings, OfOutputThatARunDoesNotReach) {
+  Case c = bed();
+  c.output.series.every = c.output.fluid.every = c.output.grains.every = c.run.until;
+  EXPECT_FALSE(any_contains(warnings(c), "is longer than the run"));
+  c.output.grains.every = 1.01 * c.run.until;
+  EXPECT_TRUE(any_contains(warnings(c), "so there is no frame after that of the start"));
+  EXPECT_FALSE(any_contains(warnings(c), "output.fluid.every"));
+  EXPECT_FALSE(any_contains(warnings(c), "output.series.every"));
+}
+
+// Of a drag coefficient of 0.4, sqrt(4/(3 0.4) (s - 1) g d); the default is 1 % of sqrt((s - 1) g d).
+TEST(Warnings, OfASpeedThatHardlyAnyGrainHas) {
+  Case c = bed();
+  analysis::TransportRateKeys& keys = c.analysis.observers.of<analysis::TransportRateKeys>().emplace();
+  const double scale =
+      std::sqrt((c.grains.front().density / c.fluid.density - 1.0) * gravity_vector(c.gravity).norm() * d);
+  const double fall = std::sqrt(4.0 / 1.2) * scale;
+  keys.moving_speed = 0.999 * fall;
+  EXPECT_FALSE(any_contains(warnings(c), "moving_speed"));
+  keys.moving_speed = 1.001 * fall;
+  EXPECT_TRUE(
+      any_contains(warnings(c), fmt::format("consider analysis.transport_rate.moving_speed: {:.2g}", 0.01 * scale)));
+  c.grains.front().density = 1.01 * c.fluid.density;  // slow water moves them
+  EXPECT_FALSE(any_contains(warnings(c), "moving_speed"));
+}
+
 // Beside grains that make a bed, those that float have no Shields number; alone they leave none to the case.
 TEST(Warnings, OfGrainsThatFloat) {
   Case c = bed();
