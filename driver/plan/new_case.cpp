@@ -101,7 +101,9 @@ std::string extra_of(const Draft& draft, const std::string& section) {
 double packed_height(const Experiment& experiment, const Draft& draft, double median) {
   const PeriodicBox box{Vec3(draft.length, draft.width, 0.0), {true, !experiment.width, false}};
   const double placed = experiment.width && draft.width < 3.0 * median ? 0.5 : 0.54;  // solid fraction
-  return draft.looseness * median * (experiment.layers * beds::settled_fraction(box, median, false) / placed + 0.25);
+  const double looser = beds::settled_fraction(box, median, false) / placed;
+  constexpr double at_least = 1.02;  // times the bed, which the region must hold
+  return draft.looseness * median * std::max(experiment.layers * looser + 0.25, at_least * experiment.layers);
 }
 
 std::string yaml_of(const Experiment& experiment, const Draft& draft) {

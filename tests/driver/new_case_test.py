@@ -213,6 +213,19 @@ class NewCase(ProgramTest):
         self.assertEqual(self.new(*EXPERIMENT).returncode, 0)
         self.assertNotIn("coupling", yaml.safe_load(self.case.read_text()))   # water has the defaults
 
+    def test_narrow_flumes(self):
+        """Between walls 1.2 diameters apart grains settle to a solid fraction of 0.43, loosely enough to be placed in no
+        more room than they fill."""
+        for layers in 2, 5:
+            with self.subTest(layers=layers):
+                result = self.new("--diameter", 0.005, "--slope", 0.02, "--depth", 0.03, "--width", 0.006, "--layers",
+                                  layers)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                case = yaml.safe_load(self.case.read_text())
+                top = case["grains"][0]["placement"]["region"]["upper"][2]
+                self.assertGreaterEqual(top, 1.0199 * layers * 0.005)
+                self.assertEqual(json.loads(self.run_well("check", self.case, "--json").stdout)["warnings"], [])
+
     def test_a_file_is_not_overwritten(self):
         words = ["--diameter", 0.005, "--shields", 0.05, "--depth", 0.03]
         self.assertEqual(self.new(*words).returncode, 0)
