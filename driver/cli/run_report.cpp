@@ -2,12 +2,12 @@
 
 #include "core/base/shell_word.hpp"
 #include "dem/grain_system.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/cost/cores.hpp"
 #include "driver/cost/load_balance.hpp"
 #include "driver/cost/machine.hpp"
 #include "driver/cost/memory.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/execution/final_bed.hpp"
 #include "driver/setup/version.hpp"
 #include "driver/warnings/case_warnings.hpp"

@@ -5,10 +5,10 @@
 #include "analysis/observers/tracks.hpp"
 #include "analysis/reach/reach_keys.hpp"
 #include "dem/motion/grain_volume.hpp"
+#include "driver/bed/reference_grain.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/reference_grain.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>

@@ -3,8 +3,8 @@
 #include "core/parallel/mpi_session.hpp"
 #include "core/parallel/on_all_ranks.hpp"
 #include "core/parallel/row_range.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/setup/build_system.hpp"
 #include "io/hdf5/hdf5_archive.hpp"
 

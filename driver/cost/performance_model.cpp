@@ -2,10 +2,10 @@
 
 #include "bodies/map/link_table.hpp"
 #include "coupling/loads/grain_exchange.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>
 #include <cmath>

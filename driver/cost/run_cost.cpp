@@ -1,7 +1,7 @@
 #include "driver/cost/run_cost.hpp"
 
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/cost/machine.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/run_context.hpp"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include "beds/files/bed_import.hpp"
 #include "core/state/bed.hpp"
 #include "dem/laws/contact_laws.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/supplied_grains.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/supplied_grains.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "driver/estimate/channel.hpp"
 
 #include "core/geometry/hydraulic_radius.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/obstacles.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>

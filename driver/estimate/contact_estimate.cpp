@@ -4,12 +4,12 @@
 #include "dem/laws/contact_laws.hpp"
 #include "dem/laws/material.hpp"
 #include "dem/motion/prescribed_motion.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/reference_grain.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/settling.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 
 #include <algorithm>
 #include <array>

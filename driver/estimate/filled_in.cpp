@@ -1,7 +1,7 @@
 #include "driver/estimate/filled_in.hpp"
 
+#include "driver/bed/bed_flow.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/channel.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"

@@ -1,6 +1,6 @@
 #include "driver/estimate/flow_drive.hpp"
 
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 
 #include <cmath>
 #include <limits>

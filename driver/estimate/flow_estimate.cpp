@@ -1,13 +1,13 @@
 #include "driver/estimate/flow_estimate.hpp"
 
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/obstacles.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/channel.hpp"
 #include "driver/estimate/flow_drive.hpp"
-#include "driver/estimate/obstacles.hpp"
 #include "driver/estimate/pore_speed.hpp"
 #include "driver/estimate/settling.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 #include "lbm/walls/law_of_the_wall.hpp"
 
 #include <Eigen/Geometry>

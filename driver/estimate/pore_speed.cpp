@@ -1,9 +1,9 @@
 #include "driver/estimate/pore_speed.hpp"
 
 #include "beds/packing/packing.hpp"
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/obstacles.hpp"
 #include "driver/estimate/channel.hpp"
-#include "driver/estimate/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>

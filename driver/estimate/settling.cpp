@@ -1,6 +1,6 @@
 #include "driver/estimate/settling.hpp"
 
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "driver/execution/final_bed.hpp"
 
 #include "analysis/observers/bed_surface.hpp"
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/input/run_context.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 
 #include "core/base/error.hpp"
 #include "core/parallel/on_first_rank.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/input/run_context.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/checkpoint_file.hpp"

@@ -1,8 +1,8 @@
 // Results of a run for scripts: summary.json.
 #pragma once
 
+#include "driver/bed/reference_grain.hpp"
 #include "driver/cost/memory.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/setup/provenance.hpp"
 #include "driver/setup/run_history.hpp"
 #include "io/files/json_object.hpp"

@@ -3,11 +3,11 @@
 #include "dem/laws/contact_laws.hpp"
 #include "dem/laws/liquid_bridge.hpp"
 #include "dem/motion/grain_volume.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/solid_setup.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/contact_stiffness.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "driver/input/derived_flow.hpp"
 
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/case/case_sections.hpp"
 #include "driver/case/preset.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/input/case_checks.hpp"
 #include "io/text/section_reader.hpp"
 

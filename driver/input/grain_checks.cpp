@@ -3,12 +3,12 @@
 #include "beds/packing/packing.hpp"
 #include "beds/supplies.hpp"
 #include "dem/laws/material.hpp"
+#include "driver/bed/obstacles.hpp"
+#include "driver/bed/reference_grain.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/estimate/obstacles.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 #include "driver/input/case_checks.hpp"
-#include "driver/warnings/unit_warnings.hpp"
 
 #include <fmt/format.h>
 

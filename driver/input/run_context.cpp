@@ -1,10 +1,10 @@
 #include "driver/input/run_context.hpp"
 
 #include "beds/sizes/size_classes.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/grain_weight.hpp"
-#include "driver/estimate/obstacles.hpp"
-#include "driver/estimate/reference_grain.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/grain_weight.hpp"
+#include "driver/bed/obstacles.hpp"
+#include "driver/bed/reference_grain.hpp"
 
 #include <fmt/format.h>
 

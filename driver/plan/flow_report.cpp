@@ -1,10 +1,10 @@
 #include "driver/plan/flow_report.hpp"
 
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/settling.hpp"
 
 #include <fmt/format.h>

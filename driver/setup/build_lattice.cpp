@@ -1,9 +1,9 @@
 // A lattice fluid with its solids or its grains, from a case.
 #include "coupling/system/lattice_system.hpp"
+#include "driver/bed/grain_weight.hpp"
+#include "driver/bed/obstacles.hpp"
 #include "driver/case/grain_setup.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/grain_weight.hpp"
-#include "driver/estimate/obstacles.hpp"
 #include "driver/setup/build_system.hpp"
 #include "driver/setup/fluid_setup.hpp"
 #include "driver/setup/turnover_setup.hpp"

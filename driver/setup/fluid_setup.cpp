@@ -1,7 +1,7 @@
 // The lattice of a case: SI to lattice units, faces to wall rules, gravity along the bed to a body force.
 #include "driver/setup/fluid_setup.hpp"
 
-#include "driver/estimate/grain_weight.hpp"
+#include "driver/bed/grain_weight.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "driver/setup/turnover_setup.hpp"
 
 #include "beds/supplies.hpp"
-#include "driver/estimate/supplied_grains.hpp"
+#include "driver/bed/supplied_grains.hpp"
 
 namespace thalweg::driver {
 

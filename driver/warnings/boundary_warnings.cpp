@@ -1,8 +1,8 @@
 #include "driver/warnings/boundary_warnings.hpp"
 
 #include "dem/motion/walls.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/case/axes.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/filled_in.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "driver/warnings/case_warnings.hpp"
 
 #include "core/geometry/periodic_box.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/drag_accuracy.hpp"
 #include "driver/estimate/filled_in.hpp"

@@ -1,10 +1,10 @@
 #include "driver/warnings/drive_warnings.hpp"
 
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/grain_weight.hpp"
 #include "driver/case/axes.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/flow_drive.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/grain_weight.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 #include "driver/warnings/plan_warnings.hpp"
 
 #include "beds/packing/packing.hpp"
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/case/limit_text.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/estimate/filled_in.hpp"
 #include "driver/estimate/flow_drive.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "driver/estimate/settling.hpp"
 
 #include <fmt/format.h>

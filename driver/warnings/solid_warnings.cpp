@@ -1,9 +1,9 @@
 #include "driver/warnings/solid_warnings.hpp"
 
+#include "driver/bed/bed_flow.hpp"
+#include "driver/bed/solid_cells.hpp"
 #include "driver/case/axes.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/bed_flow.hpp"
-#include "driver/estimate/solid_cells.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "driver/warnings/unit_warnings.hpp"
 
-#include "driver/estimate/reference_grain.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/warnings/boundary_warnings.hpp"
 
 #include <fmt/format.h>

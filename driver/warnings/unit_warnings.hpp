@@ -10,7 +10,6 @@ namespace thalweg::driver {
 inline constexpr double lightest_solid = 30.0;  // kg/m^3; foams are heavier, and 2.65 g/cm^3 is less
 inline constexpr double densest_gas = 20.0;     // kg/m^3
 inline constexpr double thinnest_gas = 5e-6;    // m^2/s; the viscosity of air is 1.5e-5, that of water 1e-6
-inline constexpr double largest_boulder = 0.5;  // m; grains of resolved flow that are larger are in millimetres
 inline constexpr double steepest_bed = 1.0;     // a tangent; no bed lies at 45 degrees
 
 std::vector<WarningRule> unit_rules();

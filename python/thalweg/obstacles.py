@@ -1,6 +1,6 @@
 """Obstacles: grains that are none of the bed but stand in it, such as a sill, a pier or a boulder.
 
-As the program has them (driver/estimate/obstacles.hpp): of the grains that are fixed and placed by positions, those
+As the program has them (driver/bed/obstacles.hpp): of the grains that are fixed and placed by positions, those
 that overlap another one by more than a twentieth of the smaller diameter, and those at least twice as large as the
 largest free grain. A place where several overlap counts once. Solids that stand still are obstacles, too. The bed is
 what is left, in the room that they leave.

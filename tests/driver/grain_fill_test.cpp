@@ -1,7 +1,7 @@
 // Populations whose number follows from the depth of their settled bed.
 #include "beds/sizes/size_distribution.hpp"
 #include "core/base/error.hpp"
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/input/case_reader.hpp"
 #include "tests/driver/case_texts.hpp"
 

@@ -47,7 +47,7 @@ ROOMS = {
     "analysis": ("observer", "statistics", "tools", "bed", "sizes", "reach", "observers"),
     "io": ("files", "text", "vtk", "hdf5", "folder"),
     "loop": (),
-    "driver": ("case", "estimate", "input", "setup", "cost", "execution", "warnings", "plan", "cli"),
+    "driver": ("case", "bed", "estimate", "input", "setup", "cost", "execution", "warnings", "plan", "cli"),
 }
 MOST_FILES = 27   # of one room: more cannot be drawn from memory
 # Files with a list of the modules, and the modules that it need not have.

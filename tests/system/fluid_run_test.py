@@ -363,10 +363,12 @@ output:
         self.assert_refused("check", self.case, "--set", "solids.1.translate=[1e12, 0, 0]",
                             words=["the solid extends from 1e+12 to 1e+12 m along x, and the box from 0 to 0.024 m"])
         warning = (
-            "warning    The surface solids.1 is 0.36 m long along y, 22.5 times the box: if its file is in millimetres,"
-            " consider solids.1.scale: 2e-05."
+            "warning    The surface solids.1 is 0.162 m long along y, 10.1 times the box: if its file is in millimetres,"
+            " consider solids.1.scale: 9e-06."
         )
-        self.assertIn(warning, self.run_well("check", self.case, "--set", "solids.1.scale=0.02").stdout)
+        self.assertIn(warning, self.run_well("check", self.case, "--set", "solids.1.scale=0.009").stdout)
+        self.assert_refused("check", self.case, "--set", "solids.1.scale=0.02",
+                            words=["solids.1.stl", "the solids fill the box", "give scale: 2e-05"])
         self.assertNotIn("millimetres", self.run_well("check", self.case).stdout)
 
 

@@ -2,10 +2,10 @@
 #include "driver/cost/memory.hpp"
 
 #include "core/base/error.hpp"
+#include "driver/bed/reference_grain.hpp"
+#include "driver/bed/supplied_grains.hpp"
 #include "driver/cost/machine.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/reference_grain.hpp"
-#include "driver/estimate/supplied_grains.hpp"
 #include "tests/driver/text_search.hpp"
 #include "tests/driver/water_over_glass.hpp"
 

@@ -1,6 +1,6 @@
 #include "driver/estimate/flow_estimate.hpp"
 
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "tests/driver/case_texts.hpp"

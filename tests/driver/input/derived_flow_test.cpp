@@ -1,5 +1,5 @@
 // The flow that a case asks for by Shields number and depth is the flow that its numbers then have.
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 #include "tests/driver/case_texts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #include "driver/plan/check_report.hpp"
 
+#include "driver/bed/bed_flow.hpp"
 #include "driver/cost/disk_space.hpp"
 #include "driver/cost/run_cost.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "driver/plan/flow_report.hpp"
 #include "driver/warnings/case_warnings.hpp"
 #include "driver/warnings/contact_warnings.hpp"

@@ -1,5 +1,5 @@
 // The weight of a grain under gravity and a held flow.
-#include "driver/estimate/grain_weight.hpp"
+#include "driver/bed/grain_weight.hpp"
 
 #include "tests/driver/water_over_glass.hpp"
 

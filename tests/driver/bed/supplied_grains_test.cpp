@@ -1,8 +1,8 @@
-#include "driver/estimate/supplied_grains.hpp"
+#include "driver/bed/supplied_grains.hpp"
 
+#include "driver/bed/reference_grain.hpp"
 #include "driver/estimate/contact_estimate.hpp"
 #include "driver/estimate/flow_estimate.hpp"
-#include "driver/estimate/reference_grain.hpp"
 #include "tests/driver/water_over_glass.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "driver/estimate/supplied_grains.hpp"
+#include "driver/bed/supplied_grains.hpp"
 
 #include "beds/packing/packing.hpp"
 #include "beds/supplies.hpp"
-#include "driver/estimate/reference_grain.hpp"
+#include "driver/bed/reference_grain.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "driver/estimate/obstacles.hpp"
+#include "driver/bed/obstacles.hpp"
 
 #include "beds/population_seeds.hpp"
 #include "core/geometry/mesh_volume.hpp"

@@ -1,4 +1,4 @@
-#include "driver/estimate/solid_cells.hpp"
+#include "driver/bed/solid_cells.hpp"
 
 #include "driver/case/solid_setup.hpp"
 

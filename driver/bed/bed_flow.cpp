@@ -1,11 +1,11 @@
-#include "driver/estimate/bed_flow.hpp"
+#include "driver/bed/bed_flow.hpp"
 
 #include "analysis/bed/bed_height.hpp"
 #include "beds/packing/packing.hpp"
 #include "core/geometry/hydraulic_radius.hpp"
+#include "driver/bed/obstacles.hpp"
+#include "driver/bed/reference_grain.hpp"
 #include "driver/case/grain_setup.hpp"
-#include "driver/estimate/obstacles.hpp"
-#include "driver/estimate/reference_grain.hpp"
 
 #include <algorithm>
 #include <cmath>

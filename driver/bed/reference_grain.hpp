@@ -22,6 +22,8 @@ ReferenceGrain reference_grain(const Case& c);
 // Sizes of the grains that it stands for, rising; a clump has the diameter of the sphere (disk) of its volume.
 std::vector<beds::SizeCount> represented_sizes(const Case& c);
 
+inline constexpr double largest_boulder = 0.5;  // m; grains of resolved flow that are larger are in millimetres
+
 // Text for reports: "diameter 0.00495 m, density 2550 kg/m^3 (...)".
 std::string reference_text(const Case& c);
 

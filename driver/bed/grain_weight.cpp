@@ -1,4 +1,4 @@
-#include "driver/estimate/grain_weight.hpp"
+#include "driver/bed/grain_weight.hpp"
 
 #include "dem/motion/grain_volume.hpp"
 

@@ -1,7 +1,7 @@
-#include "driver/estimate/obstacles.hpp"
+#include "driver/bed/obstacles.hpp"
 
+#include "driver/bed/bed_flow.hpp"
 #include "driver/case/solid_setup.hpp"
-#include "driver/estimate/bed_flow.hpp"
 #include "tests/driver/case_texts.hpp"
 #include "tests/support/meshes.hpp"
 

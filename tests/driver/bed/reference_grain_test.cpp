@@ -1,4 +1,4 @@
-#include "driver/estimate/reference_grain.hpp"
+#include "driver/bed/reference_grain.hpp"
 
 #include <gtest/gtest.h>
 
