@@ -86,13 +86,6 @@ void mark_merged(const PeriodicBox& box, std::vector<HeldGrain>& grains) {
     }
 }
 
-double longest_free_grain(const Case& c) {
-  double longest = 0.0;
-  for (const beds::Population& population : c.grains)
-    if (!population.held()) longest = std::max(longest, population.largest_extent());
-  return longest;
-}
-
 // Those with positions; `stands` is set.
 std::vector<HeldGrain> held_with_positions(const Case& c) {
   std::vector<HeldGrain> grains = all_held_grains(c);
@@ -154,6 +147,13 @@ std::vector<double> kept_volume_below(const std::vector<TriangleMesh>& surfaces,
 }
 
 }  // namespace
+
+double longest_free_grain(const Case& c) {
+  double longest = 0.0;
+  for (const beds::Population& population : c.grains)
+    if (!population.held()) longest = std::max(longest, population.largest_extent());
+  return longest;
+}
 
 HeldGrains held_grains_of(const Case& c) {
   HeldGrains found;

@@ -16,6 +16,9 @@
 
 namespace thalweg::driver {
 
+// m, those of supplies among them; 0 without.
+double longest_free_grain(const Case& c);
+
 struct Obstacles {
   std::vector<analysis::SphereInBed> spheres;  // at the start, in order of id; members of clumps among them
   double volume_of_grains = 0.0;               // m^3, of all of them one by one, as grain_volume() counts them

@@ -5,6 +5,7 @@
 #include "core/geometry/periodic_box.hpp"
 #include "dem/motion/walls.hpp"
 #include "driver/bed/grain_weight.hpp"
+#include "driver/bed/obstacles.hpp"
 #include "driver/bed/solid_cells.hpp"
 #include "driver/case/limit_text.hpp"
 #include "driver/case/solid_setup.hpp"
@@ -217,13 +218,6 @@ void check_gravity(const Case& c, const io::YamlDocument& document) {
     throw document.error("gravity.mode",
                          "full gravity begins with its own hydrostatic pressure; remove initial.from or set mode: "
                          "reduced");
-}
-
-// m, of free grains, those of supplies among them.
-double longest_free_grain(const Case& c) {
-  double longest = 0.0;
-  for (const std::size_t p : free_populations(c)) longest = std::max(longest, c.grains[p].largest_extent());
-  return longest;
 }
 
 // The region before an open face, so deep (m).
