@@ -17,14 +17,16 @@ def surface_by_solid_fraction(z, fraction, window=0.0):
     z, fraction = np.asarray(z, float), np.nan_to_num(np.asarray(fraction, float))
     if not np.sum(fraction) > 0.0:
         raise RunFolderError("these profiles hold no grains; nothing has been measured yet.")
+    if len(z) < 2:
+        raise RunFolderError("there is a single layer, which has no surface of a bed.")
     between = 0.5 * (z[1:] + z[:-1])
     edges = np.concatenate([[2.0 * z[0] - between[0]], between, [2.0 * z[-1] - between[-1]]])
     below = np.concatenate([[0.0], np.cumsum(fraction * np.diff(edges))])
     shares = np.array([0.1, 0.5]) * below[-1]
     low, high = np.interp(shares, below, edges)
     half = 0.5 * (shares[1] - shares[0]) / (high - low)
-    lower, upper = np.maximum(z - 0.5 * window, edges[0]), np.minimum(z + 0.5 * window, edges[-1])
     if window > 0.0:
+        lower, upper = np.maximum(z - 0.5 * window, edges[0]), np.minimum(z + 0.5 * window, edges[-1])
         fraction = (np.interp(upper, edges, below) - np.interp(lower, edges, below)) / (upper - lower)
     last = np.flatnonzero(fraction >= half)[-1]
     if last + 1 == len(z):

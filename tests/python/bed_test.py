@@ -121,6 +121,10 @@ class Layers(made_up.MadeUpFolder):
         share = 0.3 / np.linalg.norm([0.3, 3.0, -9.3]) / np.sin(np.arctan(0.0748))
         self.assertAlmostEqual(bed.shields_number(thalweg.Run(self.folder), 10 * D) / plain, share, 12)
 
+    def test_a_single_layer_has_no_surface(self):
+        with self.assertRaisesRegex(thalweg.RunFolderError, "a single layer"):
+            bed.surface_by_solid_fraction([D], [0.5], D)
+
     def test_profiles_of_nothing(self):
         for nothing in (0.0, np.nan):
             with self.assertRaisesRegex(thalweg.RunFolderError, "nothing has been measured"):
